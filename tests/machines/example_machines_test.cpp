@@ -31,6 +31,9 @@ const std::map<std::string, Machine>& machines_in_code() {
       {"three-axis-mill", test::three_axis_mill()},
       {"moving-table-cmm", test::moving_table_cmm()},
       {"nutating-head-mill", test::nutating_head_mill()},
+      {"jointed-arm", test::jointed_arm()},
+      {"parallel-axes-arm", test::parallel_axes_arm()},
+      {"seven-axis-arm", test::seven_axis_arm()},
   };
   return machines;
 }

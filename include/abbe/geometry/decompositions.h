@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <cmath>
+#include <complex>
 #include <type_traits>
 
 namespace abbe {
@@ -137,19 +139,24 @@ class FullLu {
   void set_threshold(double threshold) { factors_.setThreshold(threshold); }  ///< relative to the largest pivot
   Eigen::Index rank() const { return factors_.rank(); }
   Eigen::Index kernel_dimension() const { return factors_.dimensionOfKernel(); }
-  double reciprocal_condition() const;
+  double reciprocal_condition() const;  ///< of an invertible matrix
+  /// The least pivot against the largest: zero, or rounding, of a singular matrix.
+  double pivot_ratio() const { return std::abs(factors_.matrixLU().diagonal().tail(1)[0]) / factors_.maxPivot(); }
   Vector solve(const Vector& right) const;
   Matrix inverse() const;
   Eigen::MatrixXd kernel() const;  ///< a column each; one of zeros where there is none
+  /// As if so many of the last pivots were zero: those vectors, a column each.
+  Eigen::MatrixXd kernel_of(Eigen::Index dimension) const;
   Eigen::VectorXi columns() const { return factors_.permutationQ().indices(); }  ///< Q
 
  private:
-  // Six rows have code of their own, whose sums have another order.
-  using Factored = std::conditional_t<N == 6, Matrix, Eigen::MatrixXd>;
+  // Six and twelve rows have code of their own, whose sums have another order and which does not allocate.
+  using Factored = std::conditional_t<N == 6 || N == 12, Matrix, Eigen::MatrixXd>;
   Eigen::FullPivLU<Factored> factors_;
 };
 extern template class FullLu<3>;
 extern template class FullLu<6>;
+extern template class FullLu<12>;
 extern template class FullLu<Eigen::Dynamic>;
 
 /// P A = LU with exchange of rows, of an invertible matrix.
@@ -181,5 +188,33 @@ class SingularValues {
 };
 extern template class SingularValues<3>;
 extern template class SingularValues<Eigen::Dynamic>;
+
+/// Eigenvalues of any square matrix, in no order. Does not allocate.
+template <int N>
+class GeneralEigenvalues {
+ public:
+  explicit GeneralEigenvalues(const Eigen::Matrix<double, N, N>& matrix);
+  Eigen::ComputationInfo info() const { return info_; }
+  const Eigen::Matrix<std::complex<double>, N, 1>& values() const { return values_; }
+
+ private:
+  Eigen::Matrix<std::complex<double>, N, 1> values_;
+  Eigen::ComputationInfo info_;
+};
+extern template class GeneralEigenvalues<24>;
+
+/// Eigenvalues of any square matrix, in no order, with a vector each, as columns.
+class GeneralEigenvectors {
+ public:
+  explicit GeneralEigenvectors(const Eigen::MatrixXd& matrix);
+  Eigen::ComputationInfo info() const { return info_; }
+  const Eigen::VectorXcd& values() const { return values_; }
+  const Eigen::MatrixXcd& vectors() const { return vectors_; }
+
+ private:
+  Eigen::VectorXcd values_;
+  Eigen::MatrixXcd vectors_;
+  Eigen::ComputationInfo info_;
+};
 
 }  // namespace abbe

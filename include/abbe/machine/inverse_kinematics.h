@@ -26,7 +26,8 @@ struct PoseTarget {
 struct InverseOptions {
   /// Axes kept at a given command. Axes beyond those that the target needs are held too, at their command in
   /// `reference`: first those marked Axis::setting, then those nearest the workpiece, as long as the rest can do the
-  /// task.
+  /// task. Of a jointed arm: first those marked Axis::setting, then those whose holding leaves the others the largest
+  /// volume |det J| on the average over travel, and all linear axes; they are held at their command of the start.
   std::vector<HeldAxis> held;
   /// Commands in chain order, mm or rad: values of axes that are held by default. Empty: zero, or the end of travel
   /// nearest to it.
@@ -42,7 +43,7 @@ enum class InverseStatus {
   solved,                   ///< at least one solution lies within travel
   outside_travel,           ///< solutions exist, each exceeds a travel
   unreachable_orientation,  ///< the rotary axes cannot turn the tool so
-  unreachable_position,     ///< the linear axes cannot reach the point in that orientation
+  unreachable_position,     ///< the axes cannot reach the point in that orientation
   too_few_axes,             ///< not reached, and the machine has fewer axes than such a target needs
   invalid_target,           ///< target or start not finite, direction of length zero, no rotation
   invalid_machine           ///< find_problems() is not empty, or the options name an axis that does not exist
@@ -51,11 +52,12 @@ enum class InverseStatus {
 /// Why a solution is one of infinitely many, or the meeting of two.
 enum class PoseSingularity {
   none,
-  tool_parallel,    ///< tool parallel to a rotary axis, which is free and was held
-  axes_parallel,    ///< full pose: first and last rotary axes parallel, only their sum counts; the first was held
-  limit_of_reach,   ///< two branches meet at the limit of what the rotary axes reach
-  point_on_axis,    ///< polar machine: the point lies on the rotary axis that should bring it into the plane of travel
-  linear_dependent  ///< linear axes parallel or in one plane in this pose: the nearest to the start was taken
+  tool_parallel,     ///< tool parallel to a rotary axis, which is free and was held
+  axes_parallel,     ///< full pose: first and last rotary axes parallel, only their sum counts; the first was held
+  limit_of_reach,    ///< two branches meet at the limit of what the rotary axes reach
+  point_on_axis,     ///< polar machine: the point lies on the rotary axis that should bring it into the plane of travel
+  linear_dependent,  ///< linear axes parallel or in one plane in this pose: the nearest to the start was taken
+  arm_dependent      ///< jointed arm: axes dependent in this pose; one of them is free and was held at the start
 };
 
 /// One set of axis commands that brings the tool to the target.
@@ -68,7 +70,10 @@ struct InverseSolution {
   int branch = 0;                   ///< solutions that differ by full turns have the same number
   PoseSingularity singularity = PoseSingularity::none;
   std::size_t singular_axis = Machine::npos;  ///< the axis that is free, if one is
-  double singular_margin = 0;  ///< rad, angle to the nearest singularity of the rotary axes (pi if there is none)
+  /// rad, angle to the nearest singularity of the rotary axes (pi if there is none). Of a jointed arm instead 1 /
+  /// |J^-1| (Frobenius norm), with lengths in units of the arm's size: up to 2.5 times less than the least singular
+  /// value.
+  double singular_margin = 0;
   /// Volume (area) spanned by the directions of the linear axes in this pose: 1 at right angles, 0 dependent. Rounding
   /// of the linear commands grows by its inverse.
   double linear_volume = 1;
@@ -87,9 +92,12 @@ struct InverseResult {
 /// Rotary axes are found in closed form from the orientation (Paden-Kahan subproblems, generalised Euler angles), for
 /// any directions; then the linear axes from a linear system. Machines with fewer than three independent linear axes
 /// and a rotary axis that the orientation does not determine (`w C' X' b Z t` with a target point) use that axis for
-/// the position: polar machines, two branches. Fewer axes than that: least squares, with its residual. Every solution
-/// is checked by nominal_workpiece_from_tool. No errors of the machine are considered here. Method: docs/kinematics.md.
-/// Paden (1986); Murray, Li, Sastry (1994), 3.3; Shuster and Markley (2003) for three axes.
+/// the position: polar machines, two branches. Jointed arms, where that does not suffice and there are six rotary axes
+/// (five for a direction, three for a point): every branch, up to 16, in closed form where three neighbouring axes meet
+/// in a point or are parallel, else by elimination to an eigenvalue problem. Fewer axes than that: least squares, with
+/// its residual. Every solution is checked by nominal_workpiece_from_tool. No errors of the machine are considered
+/// here. Method: docs/kinematics.md. Paden (1986); Murray, Li, Sastry (1994), 3.3; Shuster and Markley (2003) for three
+/// axes; Pieper (1968), Raghavan and Roth (1993), Manocha and Canny (1994) for arms.
 class InverseKinematics {
  public:
   explicit InverseKinematics(const Machine& machine, const InverseOptions& options = {});
@@ -97,11 +105,12 @@ class InverseKinematics {
   /// All axis commands for a target.
   /// @param start   [axes] or null: free axes keep their command of it, and turns and order of the solutions go by the
   ///                distance to it; null: as InverseOptions::reference
-  /// @param result  overwritten; allocates only when it grows beyond its earlier size
+  /// @param result  overwritten; allocates only when it grows beyond its earlier size, and for arms without three
+  ///                neighbouring axes that meet or are parallel
   void solve(const PoseTarget& target, const double* start, InverseResult& result) const;
   InverseResult solve(const PoseTarget& target, const std::vector<double>& start = {}) const;
 
-  /// Axes that are held for such targets, by name or by default, with their commands.
+  /// Axes that are held for such targets, by name or by default, with their commands (of an arm: without a start).
   std::vector<HeldAxis> held_axes(TargetKind kind) const;
 
   const Machine& machine() const { return machine_; }
@@ -117,6 +126,7 @@ class InverseKinematics {
                    InverseResult& result) const;
   void solve_linear(const InversePlan& plan, const PoseTarget& target, const double* start, Candidate candidate,
                     InverseResult& result) const;
+  void solve_arm(const InversePlan& plan, const PoseTarget& target, const double* start, InverseResult& result) const;
   void add_turns(const PoseTarget& target, const double* start, std::uint32_t turning, std::size_t axis,
                  InverseSolution& solution, InverseResult& result) const;
   void add_solution(const PoseTarget& target, InverseSolution solution, InverseResult& result) const;

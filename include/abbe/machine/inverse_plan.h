@@ -39,6 +39,11 @@ struct InversePlan {
   /// position if there are fewer than three linear axes. They count as held until then.
   std::array<std::size_t, kMaxAxes> polar{};
   std::size_t polar_count = 0;
+  /// Jointed arms: rotary axes that take position and orientation together, chain order: 3 for a point, 5 for a point
+  /// and a direction, 6 for a full pose. None where the lists above suffice, or where there are not enough.
+  std::array<std::size_t, 6> arm{};
+  std::size_t arm_count = 0;
+  std::array<bool, kMaxAxes> held_by_option{};
   /// Directions of `rotary`, right-hand rule in the chain from workpiece to tool, seen past the held axes before each.
   std::array<Eigen::Vector3d, 3> direction;
   Eigen::Matrix3d held_rotation = Eigen::Matrix3d::Identity();  ///< of all held rotary axes together
@@ -46,6 +51,7 @@ struct InversePlan {
 
 /// Decides which axes work and which are held, see InverseOptions::held.
 ///
+/// With an arm, `rotary`, `linear` and `polar` are what the machine could do without it.
 /// @param machine    sound (find_problems() empty)
 /// @param held       by the user's option
 /// @param reference  [axes] commands of axes held by default; mm or rad

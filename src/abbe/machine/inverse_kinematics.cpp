@@ -160,7 +160,7 @@ std::vector<HeldAxis> InverseKinematics::held_axes(TargetKind kind) const {
   const InversePlan& plan = plans_[static_cast<std::size_t>(kind)];
   std::vector<HeldAxis> held;
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-    const bool polar = plan.polar_count > 0 && plan.polar[0] == i;
+    const bool polar = plan.arm_count == 0 && plan.polar_count > 0 && plan.polar[0] == i;
     if (plan.held[i] && !polar) held.push_back({i, plan.command[i]});
   }
   return held;
@@ -185,11 +185,16 @@ void InverseKinematics::solve(const PoseTarget& target, const double* start, Inv
   }
   if (start == nullptr) start = reference_.data();
   const InversePlan& plan = plans_[static_cast<std::size_t>(target.kind)];
-  solve_branches(plan, target, start, result);
+  if (plan.arm_count > 0) {
+    solve_arm(plan, target, start, result);
+  } else {
+    solve_branches(plan, target, start, result);
+  }
   if (result.solutions.empty()) {
     const bool misses_orientation = result.closest.orientation_residual > options_.orientation_tolerance;
-    const bool few = misses_orientation ? plan.rotary_count < plan.rotary_wanted
-                                        : plan.linear_count + std::min<std::size_t>(plan.polar_count, 1) < 3;
+    const bool few = plan.arm_count > 0   ? false
+                     : misses_orientation ? plan.rotary_count < plan.rotary_wanted
+                                          : plan.linear_count + std::min<std::size_t>(plan.polar_count, 1) < 3;
     result.status = few                  ? InverseStatus::too_few_axes
                     : misses_orientation ? InverseStatus::unreachable_orientation
                                          : InverseStatus::unreachable_position;

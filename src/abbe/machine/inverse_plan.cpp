@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/arm_axes.h"
 
 namespace abbe {
 namespace {
@@ -137,13 +138,16 @@ InversePlan make_inverse_plan(const Machine& machine, TargetKind kind, std::span
   InversePlan plan;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) plan.command[i] = reference[i];
   for (const HeldAxis& axis : held) {
-    plan.held[axis.axis] = true;
+    plan.held[axis.axis] = plan.held_by_option[axis.axis] = true;
     plan.command[axis.axis] = axis.position;
   }
   plan.rotary_wanted = kind == TargetKind::full_pose ? 3 : kind == TargetKind::point_and_direction ? 2 : 0;
   choose_rotary(machine, kind, plan);
   choose_linear(machine, plan);
   choose_polar(machine, kind, held, plan);
+  const bool suffices =
+      plan.rotary_count == plan.rotary_wanted && plan.linear_count + std::min<std::size_t>(plan.polar_count, 1) >= 3;
+  if (!suffices) choose_arm_axes(machine, kind, plan);
   return plan;
 }
 

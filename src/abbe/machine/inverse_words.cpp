@@ -37,6 +37,8 @@ std::string singularity_in_words(const Machine& machine, const InverseSolution& 
       return "point on the axis of " + name + ": " + held;
     case PoseSingularity::linear_dependent:
       return "linear axes parallel or in one plane: the commands nearest to the start were taken";
+    case PoseSingularity::arm_dependent:
+      return "axes of the arm dependent: " + held;
   }
   return "";
 }

@@ -223,6 +223,69 @@ Machine rotary_table() {
   return machine;
 }
 
+Machine arm_of_lines(const std::vector<Eigen::Vector3d>& directions, const std::vector<Eigen::Vector3d>& points,
+                     const Eigen::Vector3d& tool_at) {
+  Machine m;
+  m.name = "arm";
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    Axis a{.name = "A" + std::to_string(i + 1), .kind = AxisKind::rotary, .side = ChainSide::tool};
+    a.direction = directions[i].normalized();
+    a.point = points[i];
+    a.travel_min = -std::numbers::pi;
+    a.travel_max = std::numbers::pi;
+    m.axes.push_back(a);
+  }
+  m.tool_reference = tool_at;
+  return m;
+}
+
+Machine jointed_arm() {
+  Machine m = from_chain("jointed arm", "w b C1 B1 B2 A1 B3 A2 t");
+  travel(m, "C1", -165, 165);
+  travel(m, "B1", -110, 110);
+  travel(m, "B2", -110, 70);
+  travel(m, "A1", -160, 160);
+  travel(m, "B3", -120, 120);
+  travel(m, "A2", -400, 400);
+  point(m, "B1", {0, 0, 290});
+  point(m, "B2", {0, 0, 560});
+  point(m, "A1", {0, 0, 630});
+  point(m, "B3", {302, 0, 630});
+  point(m, "A2", {374, 0, 630});
+  tool(m, {374, 0, 630}, {60, 0, 25});
+  m.tool_direction = {-1, 0, 0};
+  return m;
+}
+
+Machine parallel_axes_arm() {
+  Machine m = from_chain("parallel-axes arm", "w b C1 B1 B2 B3 C2 B4 t");
+  for (const char* name : {"C1", "B1", "B3", "C2", "B4"}) travel(m, name, -360, 360);
+  travel(m, "B2", -180, 180);
+  point(m, "B1", {0, 0, 89});
+  point(m, "B2", {425, 0, 89});
+  point(m, "B3", {817, 0, 89});
+  point(m, "C2", {817, 109, 89});
+  point(m, "B4", {817, 109, -6});
+  axis(m, "C2").direction = {0, 0, -1};
+  tool(m, {817, 191, -6}, {0, 70, 0});
+  m.tool_direction = {0, -1, 0};
+  return m;
+}
+
+Machine seven_axis_arm() {
+  Machine m = from_chain("seven-axis arm", "w b C1 B1 C2 B2 C3 B3 C4 t");
+  for (const char* name : {"C1", "C2", "C3"}) travel(m, name, -170, 170);
+  for (const char* name : {"B1", "B2", "B3"}) travel(m, name, -120, 120);
+  travel(m, "C4", -175, 175);
+  for (const char* name : {"B1", "C2"}) point(m, name, {0, 0, 340});
+  for (const char* name : {"B2", "C3"}) point(m, name, {0, 0, 740});
+  for (const char* name : {"B3", "C4"}) point(m, name, {0, 0, 1140});
+  axis(m, "B2").direction = {0, -1, 0};
+  tool(m, {0, 0, 1266}, {0, 0, 80});
+  m.tool_direction = {0, 0, -1};
+  return m;
+}
+
 Machine single_axis(const std::string& chain) { return from_chain(chain, chain); }
 
 std::vector<NamedMachine> all_machines() {

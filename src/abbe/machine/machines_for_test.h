@@ -32,6 +32,15 @@ Machine three_axis_head();
 Machine rotary_table();
 Machine single_axis(const std::string& chain);
 
+/// Jointed arms: six axes with a spherical wrist (ABB IRB 120), with three parallel axes (as a Universal Robots UR5),
+/// seven axes (as a Kuka LBR iiwa).
+Machine jointed_arm();
+Machine parallel_axes_arm();
+Machine seven_axis_arm();
+/// An arm of rotary axes given by direction and point at zero; every travel +-180 degrees.
+Machine arm_of_lines(const std::vector<Eigen::Vector3d>& directions, const std::vector<Eigen::Vector3d>& points,
+                     const Eigen::Vector3d& tool);
+
 struct NamedMachine {
   std::string name;
   Machine machine;
