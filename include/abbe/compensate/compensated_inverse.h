@@ -108,11 +108,12 @@ struct TargetArrays {
 ///
 /// Newton's method on the exact model (ChainPlan), from commands nearby; the derivative by the commands, errors
 /// included, is taken at the start and again where it no longer serves. Rotary axes take the orientation error, within
-/// a stated turn; linear axes (or the rotary axis of a polar machine) then take the point exactly. Which axes work is
-/// decided as in InverseKinematics; all others keep their command.
+/// a stated turn; linear axes (or the rotary axis of a polar machine) then take the point exactly. The axes of a
+/// jointed arm take both together, near a singularity the point first. Which axes work is decided as in
+/// InverseKinematics; all others keep their command.
 ///
 /// The result of a pose does not depend on the poses computed with it nor on their number. Building allocates; nothing
-/// else does. One object may be used by several threads at a time. Method: docs/compensation.md.
+/// else does, but reach() with arms. One object may be used by several threads at a time. Method: docs/compensation.md.
 class CompensatedInverse {
  public:
   /// @param held  axes that keep their command although they could work, by index
@@ -127,7 +128,9 @@ class CompensatedInverse {
   void correct(PositionArrays commands, const CorrectedArrays& corrected) const;
 
   /// Commands at which the actual tool is at the targets.
-  /// @param start  commands near by, such as those of InverseKinematics for the same targets
+  /// @param start  commands near by, such as those of InverseKinematics for the same targets. A jointed arm starts from
+  ///               the nominal solution nearest to them, wherever it is; where a status says "as they came", those are
+  ///               meant.
   void reach(PositionArrays start, const TargetArrays& targets, const CorrectedArrays& corrected) const;
 
   /// What makes this object unusable; empty if it is sound. Unusable, every status is not_run.

@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace abbe {
 namespace {
@@ -46,6 +47,34 @@ SmallVector bounded_least_squares(const SmallMatrix& a, const SmallVector& b, do
     if (s < t) bounded = true;
   }
   return svd.matrixV() * z;
+}
+
+ArmVector bounded_in_order(const ArmMatrix& a, const ArmVector& b, double largest, bool& first, bool& bounded) {
+  first = bounded = false;
+  const Eigen::Index n = a.cols(), rest = a.rows() - 3;
+  const auto bounded_part = [](const Eigen::JacobiSVD<ArmMatrix>& svd, const ArmVector& right, double most, bool& cut) {
+    ArmVector z = ArmVector::Zero(svd.cols());
+    const double size = right.norm();
+    for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i) {
+      const double s = svd.singularValues()[i];
+      if (s * most < size) cut = true;
+      // s / max(s^2, t^2) with t = |b| / most, without dividing by a bound of zero.
+      const double t = most > 0 ? size / most : std::numeric_limits<double>::infinity();
+      const double divisor = std::max(s * s, t * t);
+      if (divisor > 0 && std::isfinite(divisor)) z[i] = s * svd.matrixU().col(i).dot(right) / divisor;
+    }
+    return ArmVector(svd.matrixV() * z);
+  };
+  const Eigen::JacobiSVD<ArmMatrix> svd(a.topRows(3), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  ArmVector y = bounded_part(svd, b.head(3), largest, first);
+  if (rest == 0 || n <= 3) return y;
+  // Columns: what leaves the first problem alone.
+  const ArmMatrix free = svd.matrixV().rightCols(n - 3);
+  const ArmMatrix by_free = a.bottomRows(rest) * free;
+  const ArmVector right = b.tail(rest) - a.bottomRows(rest) * y;
+  const double most = std::sqrt(std::max(0.0, largest * largest - y.squaredNorm()));
+  const Eigen::JacobiSVD<ArmMatrix> second(by_free, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return y + free * bounded_part(second, right, most, bounded);
 }
 
 }  // namespace abbe

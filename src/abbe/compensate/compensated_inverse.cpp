@@ -10,6 +10,7 @@
 
 #include "abbe/compensate/program/correction_step.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/machine/inverse_kinematics.h"
 #include "abbe/machine/machine_check.h"
 
 namespace abbe {
@@ -96,6 +97,11 @@ struct CompensatedInverse::Implementation {
     }
     for (std::size_t i = 0; i < machine.axes.size(); ++i) repeats[i] = repeats_each_turn(machine.axes[i], i, errors);
     stepper = std::make_unique<CorrectionStep>(machine, options, kept);
+    if (stepper->is_arm()) {
+      Machine keeping = machine;  // setting axes are the first to be held, at their command of the start
+      for (const HeldAxis& axis : kept) keeping.axes[axis.axis].setting = true;
+      branches = std::make_unique<InverseKinematics>(keeping);
+    }
     actual = std::make_unique<ChainPlan>(machine, errors, Body::tool, Body::workpiece);
     nominal = std::make_unique<ChainPlan>(machine, ErrorSet{}, Body::tool, Body::workpiece);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -299,7 +305,7 @@ struct CompensatedInverse::Implementation {
         if (as_came || in_turn(i, command) == command) {
           out = as_came ? command : block.position[i][k];
         } else {
-          out = command + (block.position[i][k] - block.command[i][k]);
+          out = command + (block.position[i][k] - in_turn(i, command));
         }
       }
       if (corrected.status != nullptr) corrected.status[first + k] = block.status[k];
@@ -321,6 +327,25 @@ struct CompensatedInverse::Implementation {
         block.goal_direction[i][k] = block.goal_rotation[3 * i][k] * tool[0] +
                                      block.goal_rotation[3 * i + 1][k] * tool[1] +
                                      block.goal_rotation[3 * i + 2][k] * tool[2];
+      }
+    }
+  }
+
+  /// An arm starts from the nominal solution nearest to the commands that came, which may be far away.
+  void start_on_a_branch(Block& block) const {
+    InverseResult found;
+    std::vector<double> start(machine.axes.size());
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (block.active[k] == 0) continue;
+      for (std::size_t i = 0; i < machine.axes.size(); ++i) start[i] = block.position[i][k];
+      PoseTarget target = PoseTarget::at(vector_at(block.goal_point, k));
+      target.kind = options.target;
+      target.direction = vector_at(block.goal_direction, k);
+      if (options.target == TargetKind::full_pose) target.orientation = matrix_at(block.goal_rotation, k);
+      branches->solve(target, start.data(), found);
+      if (found.status != InverseStatus::solved) continue;
+      for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        block.command[i][k] = block.position[i][k] = found.solutions.front().position[i];
       }
     }
   }
@@ -363,6 +388,7 @@ struct CompensatedInverse::Implementation {
   CorrectionOptions options;
   std::string problem;
   std::unique_ptr<CorrectionStep> stepper;
+  std::unique_ptr<InverseKinematics> branches;  // of an arm
   std::unique_ptr<ChainPlan> actual, nominal;
   std::array<Lanes, 3> actual_tool, nominal_tool;
   Lanes zeros, ones;
@@ -383,8 +409,10 @@ void CompensatedInverse::correct(PositionArrays commands, const CorrectedArrays&
 
 void CompensatedInverse::reach(PositionArrays start, const TargetArrays& targets,
                                const CorrectedArrays& corrected) const {
-  implementation_->run(start, corrected,
-                       [&](Block& block, std::size_t first) { implementation_->given_goals(block, targets, first); });
+  implementation_->run(start, corrected, [&](Block& block, std::size_t first) {
+    implementation_->given_goals(block, targets, first);
+    if (implementation_->branches) implementation_->start_on_a_branch(block);
+  });
 }
 
 const std::string& CompensatedInverse::problem() const { return implementation_->problem; }

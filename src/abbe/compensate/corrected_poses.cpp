@@ -3,8 +3,11 @@
 #include <cmath>
 
 #include "abbe/compensate/program/program_uncertainty.h"
+#include "abbe/compensate/working_axes.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/geometry/angle.h"
+#include "abbe/geometry/rotation.h"
+#include "abbe/machine/machine_check.h"
 
 namespace abbe {
 namespace {
@@ -23,15 +26,28 @@ void state_statistics(const Machine& machine, const PoseList& poses, CorrectedPo
 }
 
 /// What stays of all errors, those included that were left out.
-void state_left_by_all(const Machine& machine, const ErrorSet& errors, const PoseList& poses, CorrectedPoses& result) {
+void state_left_by_all(const Machine& machine, const ErrorSet& errors, const PoseList& poses, TargetKind target,
+                       CorrectedPoses& result) {
   for (std::size_t k = 0; k < poses.count(); ++k) {
     if (!std::isfinite(result.position_left[k])) continue;
     const RigidTransform wanted = nominal_workpiece_from_tool(machine, poses.pose(k));
     const RigidTransform actual = actual_workpiece_from_tool(machine, errors, result.commands.pose(k));
     result.position_left[k] = (actual.translation - wanted.translation).norm();
     result.orientation_left[k] =
-        angle_between(actual.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);
+        target == TargetKind::full_pose
+            ? rotation_vector(wanted.rotation * actual.rotation.transpose()).norm()
+            : angle_between(actual.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);
   }
+}
+
+/// Six axes of an arm are there for the whole pose; machine tools turn the tool about itself.
+bool serves_whole_pose(const Machine& machine, const std::vector<std::size_t>& held) {
+  std::vector<HeldAxis> kept;
+  for (const std::size_t axis : held) {
+    if (axis >= machine.axes.size()) return false;
+    kept.push_back({axis, 0});
+  }
+  return find_problems(machine).empty() && working_axes(machine, TargetKind::full_pose, kept).arm.size() == 6;
 }
 
 }  // namespace
@@ -45,6 +61,7 @@ CorrectedPoses corrected_poses(const Machine& machine, const ErrorSet& errors, c
     result.left_out = leave_out_uncertain(machine, corrected, covariance, asked.leave_out_factor);
   CorrectionOptions options;
   options.largest_turn = asked.largest_turn;
+  if (serves_whole_pose(machine, asked.held)) options.target = TargetKind::full_pose;
   const CompensatedInverse inverse(machine, corrected, options, asked.held);
   result.problem = inverse.problem();
   if (!result.problem.empty()) return result;
@@ -63,7 +80,7 @@ CorrectedPoses corrected_poses(const Machine& machine, const ErrorSet& errors, c
   inverse.correct({in, count},
                   {out, result.status.data(), result.position_left.data(), result.orientation_left.data()});
 
-  if (!result.left_out.names.empty()) state_left_by_all(machine, errors, poses, result);
+  if (!result.left_out.names.empty()) state_left_by_all(machine, errors, poses, options.target, result);
   const bool stated = !covariance.isZero(0);
   const std::vector<bool> moved(machine.axes.size(), true);
   for (std::size_t k = 0; k < count; ++k) {

@@ -12,6 +12,7 @@ namespace abbe {
 struct WorkingAxes {
   std::vector<std::size_t> turning;   ///< rotary axes that take the orientation; none: it is only reported
   std::vector<std::size_t> reaching;  ///< linear axes, or the rotary one of a polar machine, that take the point
+  std::vector<std::size_t> arm;       ///< of a jointed arm: rotary axes that take both; then the lists above are empty
   std::size_t orientation_rows = 0;   ///< numbers of the orientation that are wanted: 0, 2 (a direction) or 3
 };
 

@@ -12,10 +12,11 @@
 namespace abbe {
 namespace {
 
-constexpr double kStandingTurn = 1e-13;  // rad; a step below this is rounding
-constexpr double kStandingPart = 0.1;    // of the tolerance: a step of the point below this gains nothing
-constexpr double kSmallSine = 1e-3;      // below, the first two terms of its series give the angle to rounding
-constexpr double kWellSpread = 1e-3;     // determinant against the squares above which an inverse keeps its digits
+constexpr double kStandingTurn = 1e-13;         // rad; a step below this is rounding
+constexpr double kStandingLimitedTurn = 1e-10;  // rad; the same of an arm whose turn is bounded, which settles slowly
+constexpr double kStandingPart = 0.1;           // of the tolerance: a step of the point below this gains nothing
+constexpr double kSmallSine = 1e-3;             // below, the first two terms of its series give the angle to rounding
+constexpr double kWellSpread = 1e-3;  // determinant against the squares above which an inverse keeps its digits
 
 }  // namespace
 
@@ -35,6 +36,7 @@ void CorrectionStep::choose_axes(const std::vector<HeldAxis>& kept) {
   WorkingAxes working = working_axes(machine_, options_.target, kept);
   turning_ = std::move(working.turning);
   reaching_ = std::move(working.reaching);
+  arm_ = std::move(working.arm);
   orientation_rows_ = working.orientation_rows;
   usual_ = orientation_rows_ == 2 && turning_.size() == 2 && reaching_.size() == 3;
   for (const std::size_t axis : reaching_) usual_ = usual_ && machine_.axes[axis].kind == AxisKind::linear;
@@ -225,6 +227,35 @@ void CorrectionStep::general_step(CorrectionBlock& block, std::size_t k, const E
     block.position[reaching_[c]][k] += scale[entry(c)] * by_reach[entry(c)];
 }
 
+/// Step of a jointed arm, whose axes take point and orientation together; where they cannot, the point comes first.
+void CorrectionStep::arm_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
+                              const Eigen::Vector3d& turn) const {
+  ArmMatrix a(entry(3 + orientation_rows_), entry(arm_.size()));
+  ArmVector b(entry(3 + orientation_rows_)), turned(entry(arm_.size()));
+  b.head<3>() = missing;
+  for (std::size_t r = 0; r < orientation_rows_; ++r)
+    b[entry(3 + r)] = orientation_rows_ == 2 ? turn.dot(vector_at(block.across[r], k)) : turn[entry(r)];
+  for (std::size_t c = 0; c < arm_.size(); ++c) {
+    for (std::size_t r = 0; r < 3 + orientation_rows_; ++r) a(entry(r), entry(c)) = derivative(block, arm_[c], r, k);
+    turned[entry(c)] = at_end(block, arm_[c], k) ? 0 : block.position[arm_[c]][k] - block.command[arm_[c]][k];
+  }
+  bool shift_bounded = false, turn_bounded = false;
+  const ArmVector step =
+      bounded_in_order(a, b + a * turned, options_.largest_turn, shift_bounded, turn_bounded) - turned;
+  const double moves = (a.topRows(3) * step).norm();
+  if (step.norm() <= kStandingTurn ||
+      (turn_bounded && step.norm() <= kStandingLimitedTurn && moves <= kStandingPart * options_.position_tolerance)) {
+    const bool at_point = missing.norm() <= options_.position_tolerance;
+    if (!at_point) {
+      finish(block, k, CorrectionStatus::position_left);
+    } else {
+      finish(block, k, turn_bounded ? CorrectionStatus::turn_limited : CorrectionStatus::orientation_left);
+    }
+    return;
+  }
+  for (std::size_t c = 0; c < arm_.size(); ++c) block.position[arm_[c]][k] += step[entry(c)];
+}
+
 /// One step of one pose, or its end.
 void CorrectionStep::step(CorrectionBlock& block, std::size_t k) const {
   const Eigen::Vector3d missing = vector_at(block.goal_point, k) - vector_at(block.point, k);
@@ -233,6 +264,10 @@ void CorrectionStep::step(CorrectionBlock& block, std::size_t k) const {
   const bool at_point = block.position_residual[k] <= options_.position_tolerance;
   if (at_point && (orientation_rows_ == 0 || block.orientation_residual[k] <= options_.orientation_tolerance)) {
     finish(block, k, CorrectionStatus::reached);
+    return;
+  }
+  if (!arm_.empty()) {
+    arm_step(block, k, missing, turn);
     return;
   }
   if (usual_ && usual_step(block, k, missing, turn)) return;

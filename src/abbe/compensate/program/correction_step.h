@@ -56,6 +56,7 @@ class CorrectionStep {
 
   /// Rows of the derivative beyond the three of the point: 0, 2 (across the wanted direction) or 3.
   std::size_t orientation_rows() const { return orientation_rows_; }
+  bool is_arm() const { return !arm_.empty(); }
 
   /// Prepares steps with the derivative CorrectionBlock::by_command[(axis * rows + row) * count + k].
   void take_derivative(CorrectionBlock& block) const;
@@ -86,10 +87,13 @@ class CorrectionStep {
   bool usual_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
                   const Eigen::Vector3d& turn) const;
   void general_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing) const;
+  void arm_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
+                const Eigen::Vector3d& turn) const;
 
   Machine machine_;
   CorrectionOptions options_;
   std::vector<std::size_t> turning_, reaching_;
+  std::vector<std::size_t> arm_;  // of a jointed arm, instead of both
   std::size_t orientation_rows_ = 0;
   bool usual_ = false;  // two turning and three linear axes, tool direction wanted
 };

@@ -66,22 +66,32 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
   // As the inverse does it: rotary axes take the turn of the tool's direction, the others what is then missing of the
   // point.
   const Eigen::MatrixXd turns = columns(working.turning), reaches = columns(working.reaching);
-  Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(turns.cols(), 6);
-  if (turns.cols() > 0) {
-    const Eigen::Vector3d tool = nominal_workpiece_from_tool(with_tool, position).rotation * machine.tool_direction;
-    const Eigen::Vector3d across = tool.unitOrthogonal();
-    Eigen::Matrix<double, 2, 6> seen = Eigen::Matrix<double, 2, 6>::Zero();
-    seen.row(0).tail<3>() = across.transpose();
-    seen.row(1).tail<3>() = tool.cross(across).transpose();
+  const Eigen::MatrixXd together = columns(working.arm);
+  Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(turns.cols(), 6), reached;
+  const Eigen::Vector3d tool = nominal_workpiece_from_tool(with_tool, position).rotation * machine.tool_direction;
+  const Eigen::Vector3d across = tool.unitOrthogonal();
+  Eigen::Matrix<double, 2, 6> seen = Eigen::Matrix<double, 2, 6>::Zero();
+  seen.row(0).tail<3>() = across.transpose();
+  seen.row(1).tail<3>() = tool.cross(across).transpose();
+  if (together.cols() > 0) {
+    // Those of an arm take point and direction together.
+    Eigen::Matrix<double, 5, 6> wanted;
+    wanted << Eigen::Matrix<double, 3, 6>::Identity(), seen;
+    const CompleteOrthogonal solver(wanted * together);
+    if (solver.rank() < together.cols()) return result;
+    reached = solver.pseudo_inverse() * wanted;
+  } else if (turns.cols() > 0) {
     const CompleteOrthogonal solver(seen * turns);
     if (solver.rank() < turns.cols()) return result;
     turned = solver.pseudo_inverse() * seen;
   }
-  const CompleteOrthogonal solver(reaches.topRows<3>());
-  if (solver.rank() < reaches.cols()) return result;
-  Eigen::MatrixXd missing = -turns.topRows<3>() * turned;
-  missing.leftCols<3>() += Eigen::Matrix3d::Identity();
-  const Eigen::MatrixXd reached = solver.pseudo_inverse() * missing;
+  if (together.cols() == 0) {
+    const CompleteOrthogonal solver(reaches.topRows<3>());
+    if (solver.rank() < reaches.cols()) return result;
+    Eigen::MatrixXd missing = -turns.topRows<3>() * turned;
+    missing.leftCols<3>() += Eigen::Matrix3d::Identity();
+    reached = solver.pseudo_inverse() * missing;
+  }
   result.axes_known = true;
   // Every axis takes its own reversal value, whether it works or not.
   Eigen::MatrixXd apart = by_parameters;
@@ -97,7 +107,7 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
       by_axis.row(static_cast<Eigen::Index>(axes[k])) += by_deviation.row(static_cast<Eigen::Index>(k)) * apart;
   };
   take(working.turning, turned);
-  take(working.reaching, reached);
+  take(together.cols() > 0 ? working.arm : working.reaching, reached);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const Eigen::RowVectorXd row = by_axis.row(static_cast<Eigen::Index>(i));
     result.axis[i] = std::sqrt(std::max(0.0, row.dot(row * covariance)));
