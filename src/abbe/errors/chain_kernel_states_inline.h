@@ -53,7 +53,9 @@ HWY_INLINE void walk_side(const WeighedSide& side, const Lane* position, std::si
   CarriedFrame frame{{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, zero3()};
   for (std::size_t i = 0; i < side.axes.size(); ++i) {
     const WeighedSide::Line& line = side.axes[i];
-    const Vector3 direction = frame.turned(line.direction), point = frame.turned(line.point) + frame.origin;
+    const bool at_bed = i == 0;  // where the frame is that of the machine
+    const Vector3 direction = at_bed ? set3(line.direction) : frame.turned(line.direction);
+    const Vector3 point = at_bed ? set3(line.point) : frame.turned(line.point) + frame.origin;
     lines.direction[i] = direction;
     lines.point[i] = point;
     const Vector way = hn::Mul(set(line.sense), load(position[line.axis].v + k));
@@ -62,6 +64,18 @@ HWY_INLINE void walk_side(const WeighedSide& side, const Lane* position, std::si
     } else {
       const SineCosine a = sine_cosine(way);
       const Vector rest = hn::Sub(one, a.cosine);
+      if (at_bed) {
+        const Vector3 s = scaled(direction, a.sine), r = scaled(direction, rest);
+        frame.column[0] = {hn::MulAdd(r.x, direction.x, a.cosine), hn::MulAdd(r.x, direction.y, s.z),
+                           hn::MulSub(r.x, direction.z, s.y)};
+        frame.column[1] = {hn::MulSub(r.x, direction.y, s.z), hn::MulAdd(r.y, direction.y, a.cosine),
+                           hn::MulAdd(r.y, direction.z, s.x)};
+        frame.column[2] = {hn::MulAdd(r.x, direction.z, s.y), hn::MulSub(r.y, direction.z, s.x),
+                           hn::MulAdd(r.z, direction.z, a.cosine)};
+        frame.origin = point - frame.turned(line.point);
+        visit(i, frame);
+        continue;
+      }
       for (Vector3& column : frame.column) {
         const Vector along = hn::Mul(rest, dot(direction, column));
         column = plus_scaled(plus_scaled(scaled(column, a.cosine), cross(direction, column), a.sine), direction, along);
