@@ -18,8 +18,8 @@ void tell_distrusted(const std::filesystem::path& path, const ErrorsFile& conten
     tell("abbe: {}: marked as not to be trusted: {}\n", path.string(), reason);
 }
 
-ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine) {
-  ErrorsFile contents = read_errors(path, machine);
+ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine, StatesOfErrors states) {
+  ErrorsFile contents = read_errors(path, machine, states);
   tell_distrusted(path, contents);
   return contents;
 }

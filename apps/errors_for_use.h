@@ -14,7 +14,8 @@ class Subcommand;
 ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit);
 
 /// Errors that are only looked at: marks are told, nothing is refused. @throws InputError as read_errors()
-ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine);
+ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine,
+                                StatesOfErrors states = StatesOfErrors::refused);
 
 /// Tells that errors of this file are marked as not to be trusted, if they are.
 void tell_distrusted(const std::filesystem::path& path, const ErrorsFile& contents);

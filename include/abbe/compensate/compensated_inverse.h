@@ -124,7 +124,8 @@ class CompensatedInverse {
   CompensatedInverse& operator=(CompensatedInverse&&) noexcept;
 
   /// Commands at which the actual tool is where the nominal machine has it at the given ones. They may be written in
-  /// place.
+  /// place. States that are computed from commands follow the corrected ones; poses that do not give an input state of
+  /// the errors are not_covered.
   void correct(PositionArrays commands, const CorrectedArrays& corrected) const;
 
   /// Commands at which the actual tool is at the targets.

@@ -39,6 +39,7 @@
 //   random_errors.h                     errors for simulations, of a size that is asked for
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "abbe/errors/error_set.h"
@@ -52,17 +53,20 @@ enum class PoseStatus { not_run, ok, out_of_range };
 ///
 /// iso, linear: Trans(reference + s q u') E(q) Trans(-reference); rotary: Trans(centre) E(q) Rot' Trans(-centre), where
 /// the prime marks the axis line displaced by the location errors. Source: docs/conventions.md.
-RigidTransform actual_motion(const Machine& machine, const ErrorSet& errors, std::size_t axis, double position);
+/// @param factors  [states] (state_factors()); where they are not given, what errors with a state move is NaN
+RigidTransform actual_motion(const Machine& machine, const ErrorSet& errors, std::size_t axis, double position,
+                             std::span<const double> factors = {});
 
 /// workpiece_from_tool with errors, at the functional point (tool frame parallel to the machine's with all axes at
 /// zero).
 /// @param positions  commands in chain order, [axes], mm or rad
+/// @param given      as state_factor() takes it; NaN results where errors have an input state that is not given
 RigidTransform actual_workpiece_from_tool(const Machine& machine, const ErrorSet& errors,
-                                          const std::vector<double>& positions);
+                                          const std::vector<double>& positions, std::span<const double> given = {});
 RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& errors,
-                                    const std::vector<double>& positions);
+                                    const std::vector<double>& positions, std::span<const double> given = {});
 RigidTransform actual_bed_from_workpiece(const Machine& machine, const ErrorSet& errors,
-                                         const std::vector<double>& positions);
+                                         const std::vector<double>& positions, std::span<const double> given = {});
 
 /// Six numbers: translation of the functional point (mm), rotation vector (rad).
 using Deviation = Eigen::Matrix<double, 6, 1>;
@@ -75,12 +79,14 @@ using Deviation = Eigen::Matrix<double, 6, 1>;
 /// rotation
 ///                       rows are the instantaneous rotation (the twist), equal to the derivative of the rotation
 ///                       vector to first order in the deviation
-/// @param by_positions   if not null: twist of the actual pose per axis command, becomes [6, axes]
-/// @returns out_of_range if a position lies outside the range of an error motion; the deviation is then an
-///          extrapolation and must not be used as a result
+/// @param by_positions   if not null: twist of the actual pose per axis command, becomes [6, axes]; states that depend
+///                       on the commands are differentiated too
+/// @param given          as state_factor() takes it
+/// @returns out_of_range if a position lies outside the range of an error motion or an input state of the errors is not
+///          given; the deviation is then an extrapolation, or NaN, and must not be used as a result
 /// Source: ISO 230-1:2012, 3.4; composition order in docs/conventions.md.
 PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const std::vector<double>& positions,
                           Deviation& deviation, Eigen::MatrixXd* by_parameters = nullptr,
-                          Eigen::MatrixXd* by_positions = nullptr);
+                          Eigen::MatrixXd* by_positions = nullptr, std::span<const double> given = {});
 
 }  // namespace abbe

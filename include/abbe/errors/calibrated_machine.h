@@ -19,6 +19,7 @@ struct CalibratedMachine {
   std::string variable;      ///< name of an error motion that depends on the position and is not contained; or empty
 };
 
+/// @throws std::invalid_argument for errors with states, which are not constant
 CalibratedMachine calibrated_machine(const Machine& machine, const ErrorSet& errors);
 
 }  // namespace abbe

@@ -18,6 +18,9 @@ enum class Body { bed, workpiece, tool };
 struct PositionArrays {
   std::span<const double* const> axis;  ///< [axes] pointers to [count] values, no alignment needed
   std::size_t count = 0;
+  /// [states] of the machine, pointers to [count] values or null where not given: values of measured and lag states in
+  /// their unit, sides of approach. Empty: nothing is given. Others are computed from the commands.
+  std::span<const double* const> state{};
 };
 
 struct ConstPointArrays {
@@ -68,6 +71,7 @@ class ChainPlan {
   /// @param start    [count] points in the frame of `from`, mm
   /// @param seen     [count] points in the frame of `to`, mm; may alias start
   /// @param covered  if not null: [count], 0 where a position lies outside the range of an error motion (extrapolation)
+  ///                 or an input state of the errors is not given; what is seen is then NaN
   void transform(PositionArrays positions, ConstPointArrays start, PointArrays seen, RotationArrays rotation = {},
                  std::uint8_t* covered = nullptr) const;
 
@@ -86,7 +90,8 @@ class ChainPlan {
   /// @param jacobian    out: jacobian[parameter * stride + row * count + k], parameter and row counted in the
   ///                    arguments' order; stride >= rows * count. Parameters without influence give 0.
   /// @param by_start    if not null: out, derivative by the start point: by_start[row].{x,y,z}[k], per mm
-  /// @param by_position if not null: out, by_position[(axis * rows + row) * count + k]: derivative by the axis command
+  /// @param by_position if not null: out, by_position[(axis * rows + row) * count + k]: derivative by the axis command,
+  ///                    of states that are computed from commands too
   void differentiate(PositionArrays positions, ConstPointArrays start, ConstPointArrays seen,
                      std::span<const RowArrays> rows, std::span<const std::size_t> parameters, double* jacobian,
                      std::size_t stride, const PointArrays* by_start = nullptr, double* by_position = nullptr) const;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,15 @@ char component_letter(Component component);
 
 /// One term of an error motion E<component><axis>: coefficients times basis functions of that axis's position.
 ///
-/// Several terms with the same axis and component add up (a polynomial plus the screw's harmonics, say).
+/// Several terms with the same axis and component add up (a polynomial plus the screw's harmonics, say). A term with a
+/// state is multiplied with the factor of that state (MachineState); its coefficients are per unit of the factor.
 struct ErrorMotion {
   std::size_t axis = 0;  ///< index into Machine::axes
   Component component = Component::X;
   Basis basis;
   std::vector<double> coefficients;          ///< [basis.size()], mm or rad, actual minus nominal
   std::vector<double> standard_uncertainty;  ///< [basis.size()] or empty, mm or rad
+  std::size_t state = kNoState;              ///< index into Machine::states; kNoState: the term is not multiplied
   bool operator==(const ErrorMotion&) const = default;
 };
 
@@ -34,12 +37,14 @@ struct ErrorMotion {
 /// With L = [Rz Ry Rx of (EA0, EB0, EC0) | (EX0, EY0, EZ0)] about Axis::point the nominal motion M(q) becomes L M(q)
 /// L^-1. The part along (about) the axis's own direction is its zero position error instead: M(q + value), for rotary
 /// EC0C, for linear EX0X. An axis parallel to none of X, Y, Z has it as a part of several components (LocationEffect).
-/// Where a component can have no effect it is not valid (see location_error_is_valid).
+/// Where a component can have no effect it is not valid (see location_error_is_valid). With a state the value is per
+/// unit of its factor: the axis line stands elsewhere at every pose.
 struct LocationError {
   std::size_t axis = 0;
   Component component = Component::A;
   double value = 0;                 ///< mm or rad
   double standard_uncertainty = 0;  ///< mm or rad, 0: not stated
+  std::size_t state = kNoState;     ///< index into Machine::states; kNoState: constant
   bool operator==(const LocationError&) const = default;
 };
 
@@ -80,21 +85,26 @@ struct ErrorSet {
   void set_parameters(const std::vector<double>& values);  ///< [parameter_count()]
 
   /// Sum of all terms of the six components of one axis at one of its positions; mm, rad.
-  std::array<double, kComponentCount> evaluate(std::size_t axis, double position) const;
+  /// @param factors  [states] of the machine (state_factors()); where they are not given, components that have a term
+  ///                 with a state are NaN
+  std::array<double, kComponentCount> evaluate(std::size_t axis, double position,
+                                               std::span<const double> factors = {}) const;
 
   /// True where every term of that axis covers the position (no extrapolation).
   bool covers(std::size_t axis, double position) const;
 };
 
-/// "EXX", "EAC2": E + component + axis name.
-std::string error_motion_name(const Machine& machine, std::size_t axis, Component component);
-/// "EC0Y": E + component + 0 + axis name.
-std::string location_error_name(const Machine& machine, std::size_t axis, Component component);
+/// "EXX", "EAC2": E + component + axis name; "EXX*ambient" with a state.
+std::string error_motion_name(const Machine& machine, std::size_t axis, Component component,
+                              std::size_t state = kNoState);
+/// "EC0Y": E + component + 0 + axis name; "EC0Y*ambient" with a state.
+std::string location_error_name(const Machine& machine, std::size_t axis, Component component,
+                                std::size_t state = kNoState);
 /// "reversal_X".
 std::string reversal_name(const Machine& machine, std::size_t axis);
-/// Names in the order of ErrorSet::parameters(): "EXX[P2]", "EC0Y", "reversal_X", "tool_X".
+/// Names in the order of ErrorSet::parameters(): "EXX[P2]", "EXX*ambient[P2]", "EC0Y", "reversal_X", "tool_X".
 std::vector<std::string> parameter_names(const Machine& machine, const ErrorSet& errors);
-/// True for parameters in rad, false for mm; order of ErrorSet::parameters().
+/// True for parameters in rad, false for mm (with a state: per unit of its factor); order of ErrorSet::parameters().
 std::vector<bool> parameters_are_angles(const Machine& machine, const ErrorSet& errors);
 
 /// Parses "EXX" or "EC0Y" against the axes of a machine.

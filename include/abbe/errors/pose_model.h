@@ -14,6 +14,7 @@ namespace abbe {
 ///
 /// The batch form of actual_pose.h, with the same results to rounding. Building a model allocates; poses() does not.
 /// One model may be used by several threads at a time. Reversal values are not applied: no approach is known here.
+/// Where the errors have an input state that the positions do not give, results are NaN and not covered.
 class PoseModel {
  public:
   /// @throws std::invalid_argument for errors of first order (Composition::first_order), which have no such pose
@@ -26,7 +27,8 @@ class PoseModel {
   /// @param positions  chain order, mm or rad
   /// @param point      out, [count] functional point, mm
   /// @param rotation   out, [count] or null: columns are the axes of the tool frame in the workpiece frame
-  /// @param covered    out, [count] or null: 0 where a command lies outside the range of an error motion
+  /// @param covered    out, [count] or null: 0 where a command lies outside the range of an error motion, or an
+  ///                   input state of the errors is not given
   void poses(PositionArrays positions, PointArrays point, RotationArrays rotation = {},
              std::uint8_t* covered = nullptr) const;
 

@@ -38,6 +38,7 @@
 //   inverse_kinematics.h                all commands for a pose, singular poses, unreachable ones
 //   path.h, tool_path.h                 commands along a path; curves that a beam follows on a workpiece
 //   placement.h, test_piece.h           where a workpiece stands; cone frustum and S shape
+//   state.h                             what errors depend on besides commands: temperatures, loads, gravity
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -47,6 +48,7 @@
 #include <vector>
 
 #include "abbe/geometry/rigid_transform.h"
+#include "abbe/machine/state.h"
 
 namespace abbe {
 
@@ -88,6 +90,8 @@ struct Machine {
   Eigen::Vector3d tool_reference = Eigen::Vector3d::Zero();   ///< spindle gauge point with all axes at zero, mm
   Eigen::Vector3d tool_offset = Eigen::Vector3d::Zero();      ///< functional point from the gauge point, mm
   Eigen::Vector3d tool_direction = Eigen::Vector3d::UnitZ();  ///< unit, from the functional point to the spindle
+  std::vector<MachineState> states{};                         ///< what errors depend on besides commands; may be empty
+  Eigen::Vector3d gravity{0, 0, -9.80665};                    ///< m/s^2, machine frame; by default standard, along -Z
 
   std::size_t workpiece_axis_count() const;
 

@@ -20,7 +20,7 @@ struct MachineProblem {
 ///
 /// Names (ISO 841 letter with optional number, unique), kinds that fit the letter, finite numbers, unit directions (to
 /// 1e-9), travel_min <= travel_max within 10 km or 20,000 rad, at least one axis, workpiece-side axes before tool-side
-/// ones, primes on the workpiece side only, a proper rotation in bed_from_workpiece.
+/// ones, primes on the workpiece side only, a proper rotation in bed_from_workpiece; states as MachineState wants them.
 std::vector<MachineProblem> find_problems(const Machine& machine);
 
 /// What is allowed and seldom meant, in words: linear axes in one line or one plane (to 1e-3 rad) wherever the rotary

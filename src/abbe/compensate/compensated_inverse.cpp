@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "abbe/compensate/program/correction_step.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/machine/machine_check.h"
@@ -36,8 +37,12 @@ AxisPointers pointers(const std::array<Lanes, kMaxAxes>& lanes) {
 constexpr double kFewTurns = 100;
 
 /// True where the machine is the same after each turn of an axis.
-bool repeats_each_turn(const Axis& axis, std::size_t i, const ErrorSet& errors) {
-  if (!axis.endless) return false;
+bool repeats_each_turn(const Machine& machine, std::size_t i, const ErrorSet& errors) {
+  if (!machine.axes[i].endless) return false;
+  const std::vector<std::uint8_t> used = used_states(machine, errors);
+  for (std::size_t j = 0; j < used.size(); ++j) {
+    if (used[j] != 0 && machine.states[j].kind == StateKind::axis && machine.states[j].axis == i) return false;
+  }
   return std::all_of(errors.motions.begin(), errors.motions.end(), [&](const ErrorMotion& motion) {
     if (motion.axis != i) return true;
     const double periods = motion.basis.period > 0 ? kTurn / motion.basis.period : 0;
@@ -95,7 +100,7 @@ struct CompensatedInverse::Implementation {
       }
       kept.push_back({axis, 0});
     }
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) repeats[i] = repeats_each_turn(machine.axes[i], i, errors);
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) repeats[i] = repeats_each_turn(machine, i, errors);
     stepper = std::make_unique<CorrectionStep>(machine, options, kept);
     if (stepper->is_arm()) {
       Machine keeping = machine;  // setting axes are the first to be held, at their command of the start
@@ -116,7 +121,7 @@ struct CompensatedInverse::Implementation {
   /// Where the tool is by now, and what of the wanted pose is missing.
   void evaluate(Block& block) const {
     const AxisPointers axes = pointers(block.position);
-    actual->transform({{axes.data(), machine.axes.size()}, block.count},
+    actual->transform({{axes.data(), machine.axes.size()}, block.count, block.given_states()},
                       {actual_tool[0].data(), actual_tool[1].data(), actual_tool[2].data()}, pointers(block.point),
                       pointers(block.rotation), block.covered.data());
   }
@@ -139,7 +144,7 @@ struct CompensatedInverse::Implementation {
       }
     }
     const PointArrays seen = pointers(block.point);
-    actual->differentiate({{axes.data(), machine.axes.size()}, block.count},
+    actual->differentiate({{axes.data(), machine.axes.size()}, block.count, block.given_states()},
                           {actual_tool[0].data(), actual_tool[1].data(), actual_tool[2].data()},
                           {seen.x, seen.y, seen.z}, {rows.data(), 3 + orientation_rows}, {}, nullptr, 0, nullptr,
                           block.by_command.data());
@@ -262,6 +267,10 @@ struct CompensatedInverse::Implementation {
   /// Marks poses without numbers; their places are filled with harmless ones.
   void load(Block& block, PositionArrays commands, std::size_t first) const {
     block.any_at_end = false;
+    block.states = commands.state.size();
+    for (std::size_t j = 0; j < block.states; ++j) {
+      block.state[j] = commands.state[j] == nullptr ? nullptr : commands.state[j] + first;
+    }
     for (std::size_t k = 0; k < block.count; ++k) {
       block.status[k] = CorrectionStatus::not_run;
       block.active[k] = 1;

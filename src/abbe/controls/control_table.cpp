@@ -15,6 +15,7 @@
 #include "abbe/controls/useless_tables.h"
 #include "abbe/controls/writer_request.h"
 #include "abbe/formats/machine/correction_limits.h"
+#include "abbe/formats/machine/errors_file.h"
 #include "abbe/verify/error_map.h"
 
 namespace abbe {
@@ -148,6 +149,7 @@ void judge(const Making& making, ControlTables& made) {
 }  // namespace
 
 ControlTables make_control_tables(const ControlTableRequest& request) {
+  refuse_states(request.machine, request.errors, "a table of a control");
   const TableFormat& format = table_format(request.format);
   const Machine& machine = request.machine;
   const ErrorSet& errors = request.errors;

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "abbe/geometry/rotation.h"
 
@@ -17,14 +19,21 @@ struct AxisLine {
   double zero_position = 0;
 };
 
-AxisLine displaced_line(const Axis& axis, const ErrorSet& errors, std::size_t index) {
+/// What a coefficient of an error is multiplied with; NaN where its state has no factor.
+double factor_of(std::size_t state, std::span<const double> factors) {
+  if (state == kNoState) return 1;
+  return factors.empty() ? std::numeric_limits<double>::quiet_NaN() : factors[state];
+}
+
+AxisLine displaced_line(const Axis& axis, const ErrorSet& errors, std::size_t index, std::span<const double> factors) {
   AxisLine line{axis.direction, axis.point};
   for (const LocationError& location : errors.locations) {
     if (location.axis != index) continue;
     const LocationEffect effect = location_effect(axis, location.component);
-    line.zero_position += location.value * effect.zero_position;
-    line.tilt += location.value * effect.tilt;
-    line.centre += location.value * effect.shift;
+    const double value = location.value * factor_of(location.state, factors);
+    line.zero_position += value * effect.zero_position;
+    line.tilt += value * effect.tilt;
+    line.centre += value * effect.shift;
   }
   line.direction = rotation_from_error_angles(line.tilt) * axis.direction;
   return line;
@@ -52,10 +61,11 @@ RigidTransform error_transform(const Axis& axis, const std::array<double, kCompo
 }
 
 RigidTransform motion_with_line(const Machine& machine, const ErrorSet& errors, std::size_t index, double position,
-                                const AxisLine& line) {
+                                const AxisLine& line, std::span<const double> factors) {
   const Axis& axis = machine.axes[index];
   const RigidTransform motion = line_motion(axis, line, position);
-  const RigidTransform error = error_transform(axis, errors.evaluate(index, position), errors.composition.first_order);
+  const RigidTransform error =
+      error_transform(axis, errors.evaluate(index, position, factors), errors.composition.first_order);
   return error_comes_first(axis, errors.composition) ? error * motion : motion * error;
 }
 
@@ -86,10 +96,10 @@ struct AxisTwists {
 };
 
 AxisTwists twists_of_axis(const Machine& machine, const ErrorSet& errors, std::size_t index, double position,
-                          const AxisLine& line) {
+                          const AxisLine& line, std::span<const double> factors) {
   const Axis& axis = machine.axes[index];
   const RigidTransform motion = line_motion(axis, line, position);
-  const std::array<double, kComponentCount> e = errors.evaluate(index, position);
+  const std::array<double, kComponentCount> e = errors.evaluate(index, position, factors);
   const RigidTransform error = error_transform(axis, e, false);
   const bool error_first = error_comes_first(axis, errors.composition);
 
@@ -121,49 +131,55 @@ AxisTwists twists_of_axis(const Machine& machine, const ErrorSet& errors, std::s
   }
   for (const ErrorMotion& term : errors.motions) {
     if (term.axis != index) continue;
-    twists.position = twists.position.plus(twists.errors[static_cast<std::size_t>(term.component)],
-                                           term.basis.slope(position, term.coefficients));
+    twists.position =
+        twists.position.plus(twists.errors[static_cast<std::size_t>(term.component)],
+                             term.basis.slope(position, term.coefficients) * factor_of(term.state, factors));
   }
   return twists;
 }
 
 }  // namespace
 
-RigidTransform actual_motion(const Machine& machine, const ErrorSet& errors, std::size_t axis, double position) {
-  return motion_with_line(machine, errors, axis, position, displaced_line(machine.axes[axis], errors, axis));
+RigidTransform actual_motion(const Machine& machine, const ErrorSet& errors, std::size_t axis, double position,
+                             std::span<const double> factors) {
+  return motion_with_line(machine, errors, axis, position, displaced_line(machine.axes[axis], errors, axis, factors),
+                          factors);
 }
 
 RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& errors,
-                                    const std::vector<double>& positions) {
+                                    const std::vector<double>& positions, std::span<const double> given) {
   assert(positions.size() == machine.axes.size());
+  const std::vector<double> factors = state_factors(machine, positions, given);
   RigidTransform bed_from_tool;
   for (std::size_t i = machine.workpiece_axis_count(); i < machine.axes.size(); ++i) {
-    bed_from_tool = bed_from_tool * actual_motion(machine, errors, i, positions[i]);
+    bed_from_tool = bed_from_tool * actual_motion(machine, errors, i, positions[i], factors);
   }
   return bed_from_tool *
          RigidTransform::translate(machine.tool_reference + machine.tool_offset + errors.tool_offset_error);
 }
 
 RigidTransform actual_bed_from_workpiece(const Machine& machine, const ErrorSet& errors,
-                                         const std::vector<double>& positions) {
+                                         const std::vector<double>& positions, std::span<const double> given) {
   assert(positions.size() == machine.axes.size());
+  const std::vector<double> factors = state_factors(machine, positions, given);
   RigidTransform bed_from_workpiece;
   for (std::size_t i = machine.workpiece_axis_count(); i-- > 0;) {
-    bed_from_workpiece = bed_from_workpiece * actual_motion(machine, errors, i, positions[i]);
+    bed_from_workpiece = bed_from_workpiece * actual_motion(machine, errors, i, positions[i], factors);
   }
   return bed_from_workpiece * machine.bed_from_workpiece;
 }
 
 RigidTransform actual_workpiece_from_tool(const Machine& machine, const ErrorSet& errors,
-                                          const std::vector<double>& positions) {
+                                          const std::vector<double>& positions, std::span<const double> given) {
   assert(!errors.composition.first_order && "a first-order error is not a rotation and has no such inverse");
-  return actual_bed_from_workpiece(machine, errors, positions).inverse() *
-         actual_bed_from_tool(machine, errors, positions);
+  return actual_bed_from_workpiece(machine, errors, positions, given).inverse() *
+         actual_bed_from_tool(machine, errors, positions, given);
 }
 
 PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const std::vector<double>& positions,
-                          Deviation& deviation, Eigen::MatrixXd* by_parameters, Eigen::MatrixXd* by_positions) {
-  const RigidTransform actual = actual_workpiece_from_tool(machine, errors, positions);
+                          Deviation& deviation, Eigen::MatrixXd* by_parameters, Eigen::MatrixXd* by_positions,
+                          std::span<const double> given) {
+  const RigidTransform actual = actual_workpiece_from_tool(machine, errors, positions, given);
   const RigidTransform nominal = nominal_workpiece_from_tool(machine, positions);
   deviation.head<3>() = actual.translation - nominal.translation;
   deviation.tail<3>() = rotation_vector(actual.rotation * nominal.rotation.transpose());
@@ -172,20 +188,32 @@ PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const 
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     if (!errors.covers(i, positions[i])) status = PoseStatus::out_of_range;
   }
+  const std::vector<double> factors = state_factors(machine, positions, given);
+  std::vector<std::uint8_t> used(machine.states.size(), 0);
+  for (const ErrorMotion& motion : errors.motions) {
+    if (motion.state != kNoState) used[motion.state] = 1;
+  }
+  for (const LocationError& location : errors.locations) {
+    if (location.state != kNoState) used[location.state] = 1;
+  }
+  for (std::size_t j = 0; j < used.size(); ++j) {
+    if (used[j] != 0 && !std::isfinite(factors[j])) status = PoseStatus::out_of_range;
+  }
   if (!by_parameters && !by_positions) return status;
 
-  const RigidTransform bed_from_workpiece = actual_bed_from_workpiece(machine, errors, positions);
-  const RigidTransform bed_from_tool = actual_bed_from_tool(machine, errors, positions);
+  const RigidTransform bed_from_workpiece = actual_bed_from_workpiece(machine, errors, positions, given);
+  const RigidTransform bed_from_tool = actual_bed_from_tool(machine, errors, positions, given);
   const Eigen::Matrix3d workpiece_from_bed = bed_from_workpiece.rotation.transpose();
   const Eigen::Vector3d point = bed_from_tool.translation;
 
   if (by_parameters) by_parameters->setZero(6, static_cast<Eigen::Index>(errors.parameter_count()));
   if (by_positions) by_positions->setZero(6, static_cast<Eigen::Index>(machine.axes.size()));
+  std::vector<Deviation> by_factor(machine.states.size(), Deviation::Zero());
   const std::size_t workpiece_side = machine.workpiece_axis_count();
 
   const auto visit = [&](std::size_t axis, const RigidTransform& bed_from_axis) {
-    const AxisTwists twists =
-        twists_of_axis(machine, errors, axis, positions[axis], displaced_line(machine.axes[axis], errors, axis));
+    const AxisTwists twists = twists_of_axis(machine, errors, axis, positions[axis],
+                                             displaced_line(machine.axes[axis], errors, axis, factors), factors);
     const double sign = axis < workpiece_side ? -1.0 : 1.0;
     const auto seen = [&](const Twist& twist) {
       const Twist in_bed = twist.carried_by(bed_from_axis);
@@ -195,24 +223,29 @@ PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const 
       return column;
     };
     if (by_positions) by_positions->col(static_cast<Eigen::Index>(axis)) = seen(twists.position);
-    if (!by_parameters) return;
     Eigen::Index column = 0;
     std::vector<double> functions;
     for (const ErrorMotion& term : errors.motions) {
       const std::size_t size = term.coefficients.size();
-      if (term.axis == axis) {
+      if (term.axis == axis && (by_parameters || term.state != kNoState)) {
         functions.resize(size);
         term.basis.values(positions[axis], term.coefficients, functions);
         const Deviation direction = seen(twists.errors[static_cast<std::size_t>(term.component)]);
+        const double factor = factor_of(term.state, factors);
         for (std::size_t k = 0; k < size; ++k) {
-          by_parameters->col(column + static_cast<Eigen::Index>(k)) = functions[k] * direction;
+          if (by_parameters) {
+            by_parameters->col(column + static_cast<Eigen::Index>(k)) = factor * functions[k] * direction;
+          }
+          if (term.state != kNoState) by_factor[term.state] += term.coefficients[k] * functions[k] * direction;
         }
       }
       column += static_cast<Eigen::Index>(size);
     }
     for (const LocationError& location : errors.locations) {
-      if (location.axis == axis) {
-        by_parameters->col(column) = seen(twists.locations[static_cast<std::size_t>(location.component)]);
+      if (location.axis == axis && (by_parameters || location.state != kNoState)) {
+        const Deviation direction = seen(twists.locations[static_cast<std::size_t>(location.component)]);
+        if (by_parameters) by_parameters->col(column) = factor_of(location.state, factors) * direction;
+        if (location.state != kNoState) by_factor[location.state] += location.value * direction;
       }
       ++column;
     }
@@ -220,15 +253,23 @@ PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const 
   RigidTransform bed_from_axis;
   for (std::size_t i = workpiece_side; i < machine.axes.size(); ++i) {
     visit(i, bed_from_axis);
-    bed_from_axis = bed_from_axis * actual_motion(machine, errors, i, positions[i]);
+    bed_from_axis = bed_from_axis * actual_motion(machine, errors, i, positions[i], factors);
   }
   bed_from_axis = {};
   for (std::size_t i = workpiece_side; i-- > 0;) {
     visit(i, bed_from_axis);
-    bed_from_axis = bed_from_axis * actual_motion(machine, errors, i, positions[i]);
+    bed_from_axis = bed_from_axis * actual_motion(machine, errors, i, positions[i], factors);
   }
   if (by_parameters) {
     by_parameters->topRightCorner<3, 3>() = workpiece_from_bed * bed_from_tool.rotation;
+  }
+  for (std::size_t j = 0; by_positions && j < used.size(); ++j) {
+    if (used[j] == 0 || !depends_on_commands(machine, j)) continue;
+    std::vector<double> slopes;
+    state_factor(machine, j, positions, given, &slopes);
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      by_positions->col(static_cast<Eigen::Index>(i)) += slopes[i] * by_factor[j];
+    }
   }
   return status;
 }

@@ -39,7 +39,8 @@ struct FunctionGroup {
   double inverse_step = 0;  ///< 1 / length of equal intervals; 0: the interval is searched
   std::size_t breaks = 0;   ///< index into numbers: [pieces] starts, then [pieces] inverse lengths
   std::size_t pieces = 0;
-  bool straight = false;  ///< all pieces are straight lines
+  bool straight = false;         ///< all pieces are straight lines
+  std::size_t state = kNoState;  ///< index into CompiledChain::states
   std::vector<Series> series;
 };
 
@@ -57,6 +58,7 @@ struct BasisUse {
   std::size_t group = 0;    ///< pieces: the group that finds the interval
   std::size_t weights = 0;  ///< pieces: index into numbers, per interval 4 functions of 4 powers of the local position
   int first_function = 0;   ///< pieces: function 0 of interval i is number i + first_function, modulo size
+  std::size_t state = kNoState;  ///< index into CompiledChain::states
   std::vector<Term> terms;
 };
 
@@ -64,8 +66,10 @@ struct BasisUse {
 struct AxisStep {
   struct Location {
     std::size_t parameter = 0;
-    double effect[7] = {};  ///< of one unit: 0 .. 2 shifts, 3 .. 5 tilts, 6 zero position
-    int only = -1;          ///< the one of them that is 1 where all others are 0; -1: several
+    double effect[7] = {};         ///< of one unit: 0 .. 2 shifts, 3 .. 5 tilts, 6 zero position
+    int only = -1;                 ///< the one of them that is 1 where all others are 0; -1: several
+    std::size_t state = kNoState;  ///< index into CompiledChain::states
+    double value = 0;              ///< with a state: present value of the parameter
   };
   std::size_t axis = 0;
   bool rotary = false;
@@ -84,9 +88,45 @@ struct AxisStep {
   double reference[3] = {};           ///< Axis::point
   double tilt_axes[3][3] = {};        ///< [k]: axis about which EA0, EB0, EC0 turns the line
   double lowest = 0, highest = 0;     ///< positions covered by all terms
-  std::vector<FunctionGroup> groups;
+  std::vector<FunctionGroup> groups;  ///< those without a state first
+  std::size_t plain_groups = 0;       ///< how many have no state
   std::vector<BasisUse> bases;
   std::vector<Location> locations;
+  bool moving_line = false;          ///< a location error has a state: the line is another one at every pose
+  double nominal_direction[3] = {};  ///< the line before its location errors
+  double fixed_effect[7] = {};       ///< of the location errors without a state together, as Location::effect
+};
+
+/// Loads of one axis, together: the torque needs no more of them.
+struct CarriedLoads {
+  std::size_t at = 0;     ///< index into WeighedSide::axes
+  double mass = 0;        ///< kg
+  double moment[3] = {};  ///< sum of mass times point, kg mm, all axes at zero
+};
+
+/// How the factor of a state is found.
+struct StateSource {
+  StateKind kind = StateKind::measured;
+  std::size_t given = 0;  ///< measured, lag, approach: index into PositionArrays::state
+  double reference = 0;
+  std::size_t axis = 0;               ///< axis: index into PositionArrays::axis
+  std::size_t first = 0, second = 0;  ///< product: indices into CompiledChain::states, below its own
+  std::size_t side = 0;               ///< gravity: index into CompiledChain::sides
+  std::size_t about = 0;              ///< gravity: index into WeighedSide::axes
+  std::vector<CarriedLoads> loads;
+  bool moves = false;  ///< depends on commands
+};
+
+/// Nominal axes from the bed outwards, as far as loads are carried.
+struct WeighedSide {
+  struct Line {
+    std::size_t axis = 0;
+    bool rotary = false;
+    double sense = 1;
+    double direction[3] = {};
+    double point[3] = {};
+  };
+  std::vector<Line> axes;
 };
 
 struct ConstantTransform {
@@ -102,6 +142,9 @@ struct CompiledChain {
   std::vector<double> numbers;
   std::vector<std::uint8_t> influences;  ///< [parameter_count] 1 where a step or a tool offset uses it
   std::size_t tool_parameter = 0;        ///< first of three
+  std::vector<StateSource> states;       ///< that errors of the steps use, products last; at most kMaxStates
+  std::vector<WeighedSide> sides;
+  double weight[3] = {};  ///< gravity, 1e-3 m/s^2: times kg mm it gives N m
   bool starts_at_tool = false, ends_at_tool = false;
   bool first_order = false;
 };

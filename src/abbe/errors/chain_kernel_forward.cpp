@@ -5,6 +5,7 @@
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include "abbe/errors/chain_kernel_inline.h"
+#include "abbe/errors/chain_kernel_states_inline.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace abbe::chain {
@@ -110,6 +111,33 @@ HWY_NOINLINE void pass_axis(const AxisStep& step, const AxisLanes& lanes, std::s
   }
 }
 
+/// The same where location errors with states move the line.
+template <int kColumns>
+HWY_NOINLINE void pass_moving_axis(const AxisStep& step, const AxisLanes& lanes, const Lane* factor, std::size_t end,
+                                   State& state) {
+  LineLanes line;
+  displace_lines(step, factor, end, line);
+  for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+    Moving<kColumns> m;
+    m.point = load(state.point, k);
+    for (int i = 0; i < kColumns; ++i) m.column[i] = load(state.column[i], k);
+    if (step.has_errors && step.error_first) apply_error(step, lanes, k, m);
+    const Vector3 direction = load(line.direction, k);
+    const Vector position = load(lanes.position.v + k), zero_position = load(line.zero_position.v + k);
+    if (step.rotary) {
+      const Matrix3 r = moving_rotation(step, direction, position, zero_position);
+      const Vector3 centre = load(line.centre, k);
+      m.point = times(r, m.point - centre) + centre;
+      for (int i = 0; i < kColumns; ++i) m.column[i] = times(r, m.column[i]);
+    } else {
+      m.point = plus_scaled(m.point, direction, hn::Mul(hn::Add(position, zero_position), set(step.sign)));
+    }
+    if (step.has_errors && !step.error_first) apply_error(step, lanes, k, m);
+    store(m.point, state.point, k);
+    for (int i = 0; i < kColumns; ++i) store(m.column[i], state.column[i], k);
+  }
+}
+
 template <int kColumns>
 HWY_NOINLINE void begin(const ConstantTransform& start, std::size_t end, State& state) {
   const Matrix3 turn = set_matrix(start.rotation);
@@ -160,19 +188,24 @@ HWY_NOINLINE void finish(const ConstantTransform& last, const Results& results, 
 
 template <int kColumns>
 void run(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
-         const Results& results, State& state, AxisLanes& lanes) {
+         const Results& results, State& state, AxisLanes& lanes, const Lane* factor) {
   const std::size_t end = whole_vectors(count);
   begin<kColumns>(chain.start, end, state);
   for (const AxisStep& step : chain.steps) {
-    evaluate_axis(chain, step, positions.axis[step.axis] + first, count, lanes);
-    pass_axis<kColumns>(step, lanes, end, state);
+    evaluate_axis(chain, step, positions.axis[step.axis] + first, count, lanes, factor);
+    if (step.moving_line) {
+      pass_moving_axis<kColumns>(step, lanes, factor, end, state);
+    } else {
+      pass_axis<kColumns>(step, lanes, end, state);
+    }
   }
   finish<kColumns>(chain.end, results, count, state);
 }
 
-void transform_block(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
-                     const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
-                     std::uint8_t* covered) {
+/// @param factor  of the states of the chain; null if it has none
+void transform_with(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
+                    const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
+                    std::uint8_t* covered, const Lane* factor) {
   State state;
   AxisLanes lanes;
   Results results{{seen.x + first, seen.y + first, seen.z + first}, {}};
@@ -181,11 +214,11 @@ void transform_block(const CompiledChain& chain, const PositionArrays& positions
   read_lane(start.y + first, count, state.point[1]);
   read_lane(start.z + first, count, state.point[2]);
   if (rotation.r[0] == nullptr) {
-    run<0>(chain, positions, first, count, results, state, lanes);
+    run<0>(chain, positions, first, count, results, state, lanes, factor);
   } else if (chain.first_order) {
-    run<3>(chain, positions, first, count, results, state, lanes);
+    run<3>(chain, positions, first, count, results, state, lanes, factor);
   } else {
-    run<2>(chain, positions, first, count, results, state, lanes);
+    run<2>(chain, positions, first, count, results, state, lanes, factor);
   }
   if (covered == nullptr) return;
   std::memset(covered + first, 1, count);
@@ -196,6 +229,31 @@ void transform_block(const CompiledChain& chain, const PositionArrays& positions
       covered[first + k] =
           static_cast<std::uint8_t>(covered[first + k] & (q[k] >= step.lowest && q[k] <= step.highest));
     }
+  }
+}
+
+HWY_NOINLINE void transform_with_states(const CompiledChain& chain, const PositionArrays& positions, std::size_t first,
+                                        std::size_t count, const ConstPointArrays& start, const PointArrays& seen,
+                                        const RotationArrays& rotation, std::uint8_t* covered) {
+  StateLanes lanes;
+  evaluate_states(chain, positions, first, count, lanes);
+  transform_with(chain, positions, first, count, start, seen, rotation, covered, lanes.factor);
+  if (covered == nullptr) return;
+  for (std::size_t s = 0; s < chain.states.size(); ++s) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const double value = lanes.factor[s].v[k];
+      covered[first + k] = static_cast<std::uint8_t>(covered[first + k] & (value - value == 0));  // finite
+    }
+  }
+}
+
+void transform_block(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
+                     const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
+                     std::uint8_t* covered) {
+  if (chain.states.empty()) {
+    transform_with(chain, positions, first, count, start, seen, rotation, covered, nullptr);
+  } else {
+    transform_with_states(chain, positions, first, count, start, seen, rotation, covered);
   }
 }
 

@@ -49,11 +49,12 @@ std::vector<double> polynomial_conversion(BasisKind kind, std::size_t size, Form
 }
 
 /// Finds the group that shares the argument, or adds it.
-FunctionGroup& polynomial_group(AxisStep& step, Form form, double centre, double scale) {
+FunctionGroup& polynomial_group(AxisStep& step, Form form, double centre, double scale, std::size_t state) {
   for (FunctionGroup& group : step.groups) {
-    if (group.form == form && group.centre == centre && group.scale == scale) return group;
+    if (group.form == form && group.centre == centre && group.scale == scale && group.state == state) return group;
   }
   FunctionGroup group;
+  group.state = state;
   group.form = form;
   group.centre = centre;
   group.scale = scale;
@@ -157,14 +158,26 @@ std::size_t wrapped(std::size_t piece, int first_function, std::size_t function,
 
 }  // namespace
 
-void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, const ErrorSet& errors) {
+void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, const ErrorSet& errors,
+                                 std::span<const std::size_t> compiled_state) {
   AxisStep& step = chain.steps[step_index];
-  std::vector<Basis> group_bases, use_bases;  // those of pieces groups and of uses, same index; empty for others
+  add_terms_of_state(chain, step, errors, kNoState, kNoState);
+  step.plain_groups = step.groups.size();
+  for (std::size_t state = 0; state < compiled_state.size(); ++state) {
+    add_terms_of_state(chain, step, errors, state, compiled_state[state]);
+  }
+}
+
+void FunctionCompiler::add_terms_of_state(CompiledChain& chain, AxisStep& step, const ErrorSet& errors,
+                                          std::size_t state, std::size_t compiled) {
+  // Those of pieces groups and of uses, same index; empty for others and for those of other states.
+  std::vector<Basis> group_bases(step.groups.size()), use_bases(step.bases.size());
+  const std::size_t first_group = step.groups.size(), first_use = step.bases.size();
   const auto polynomial_size = [&](const Basis& basis) {
     std::size_t size = 0;
     for (const ErrorMotion& other : errors.motions) {
-      if (other.axis == step.axis && is_polynomial(other.basis.kind) && other.basis.from == basis.from &&
-          other.basis.to == basis.to) {
+      if (other.axis == step.axis && other.state == state && is_polynomial(other.basis.kind) &&
+          other.basis.from == basis.from && other.basis.to == basis.to) {
         size = std::max(size, other.basis.size());
       }
     }
@@ -175,7 +188,7 @@ void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, c
   for (const ErrorMotion& motion : errors.motions) {
     const std::size_t first_parameter = parameter;
     parameter += motion.coefficients.size();
-    if (motion.axis != step.axis) continue;
+    if (motion.axis != step.axis || motion.state != state) continue;
     const Basis& basis = motion.basis;
     const int component = static_cast<int>(motion.component);
     step.has_errors = true;
@@ -184,6 +197,7 @@ void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, c
     BasisUse use;
     use.kind = basis.kind;
     use.size = basis.size();
+    use.state = compiled;
 
     if (is_polynomial(basis.kind) || basis.kind == BasisKind::fourier) {
       FunctionGroup* group = nullptr;
@@ -191,10 +205,11 @@ void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, c
       if (basis.kind == BasisKind::fourier) {
         use.scale = 2 * std::numbers::pi / basis.period;
         use.shares_turn = step.rotary && use.scale == 1.0;
-        group = &polynomial_group(step, Form::fourier, 0, use.scale);
+        group = &polynomial_group(step, Form::fourier, 0, use.scale, compiled);
         group->shares_turn = use.shares_turn;
         for (const ErrorMotion& other : errors.motions) {
-          if (other.axis == step.axis && other.basis.kind == basis.kind && other.basis.period == basis.period) {
+          if (other.axis == step.axis && other.state == state && other.basis.kind == basis.kind &&
+              other.basis.period == basis.period) {
             numbers = std::max(numbers, other.basis.size());
           }
         }
@@ -204,7 +219,7 @@ void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, c
         use.scale = 2.0 / (basis.to - basis.from);
         size = numbers = polynomial_size(basis);
         const Form form = numbers > kLargestPowerSize ? Form::chebyshev : Form::power;
-        group = &polynomial_group(step, form, use.centre, use.scale);
+        group = &polynomial_group(step, form, use.centre, use.scale, compiled);
         term.conversion = polynomial_conversion(basis.kind, basis.size(), form, numbers);
       }
       Series& series = group->series[find_series(*group, component)];
@@ -217,10 +232,11 @@ void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, c
       term.series_size = numbers;
       group_bases.resize(step.groups.size());
     } else {
-      std::size_t g = 0;
+      std::size_t g = first_group;
       while (g < group_bases.size() && !(step.groups[g].form == Form::pieces && group_bases[g] == basis)) ++g;
       if (g == group_bases.size()) {
         step.groups.push_back(make_pieces(basis, chain.numbers));
+        step.groups.back().state = compiled;
         group_bases.push_back(basis);
       }
       FunctionGroup& group = step.groups[g];
@@ -239,7 +255,7 @@ void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, c
       use.first_function = term.first_function;
     }
 
-    std::size_t u = 0;
+    std::size_t u = first_use;
     while (u < use_bases.size() && (basis.kind == BasisKind::table_monotone || !(use_bases[u] == basis))) ++u;
     if (u == use_bases.size()) {
       if (term.pieces > 0) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "abbe/errors/chain_kernel.h"
@@ -10,7 +11,9 @@ namespace abbe::chain {
 class FunctionCompiler {
  public:
   /// Adds all terms of the step's axis to the step, reserving their numbers in the chain.
-  void add_terms(CompiledChain& chain, std::size_t step, const ErrorSet& errors);
+  /// @param compiled_state  [states of the machine] index into CompiledChain::states
+  void add_terms(CompiledChain& chain, std::size_t step, const ErrorSet& errors,
+                 std::span<const std::size_t> compiled_state);
 
   /// Writes new coefficients into chain.numbers; does not allocate.
   /// @param values  all parameters, in the order of ErrorSet::parameters()
@@ -29,6 +32,9 @@ class FunctionCompiler {
     int first_function;
     std::vector<double> nodes;  ///< table_monotone: its weights follow the values
   };
+  /// Those of one state (a machine's), or of none.
+  void add_terms_of_state(CompiledChain& chain, AxisStep& step, const ErrorSet& errors, std::size_t state,
+                          std::size_t compiled);
   std::vector<Term> terms_;
 };
 

@@ -403,9 +403,47 @@ inline HWY_NOINLINE void evaluate_pieces(const FunctionGroup& group, const doubl
   }
 }
 
+/// All series of one group over the block.
+HWY_INLINE void evaluate_group(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
+                               std::size_t end, unsigned written, Lane* out) {
+  const std::size_t width = hn::Lanes(Tag());
+  // Several vectors at a time hide the latency of the recurrences and share the coefficients, as many as registers
+  // hold; the last ones go singly, with the same operations.
+  std::size_t k = 0;
+  if (group.form == Form::pieces) {
+    for (; k < end; k += width) evaluate_pieces(group, numbers, lanes, k, written, out);
+  } else if (group.form == Form::fourier) {
+    for (; k + 2 * width <= end; k += 2 * width) evaluate_fourier<2>(group, numbers, lanes, k, written, out);
+    for (; k < end; k += width) evaluate_fourier<1>(group, numbers, lanes, k, written, out);
+  } else {
+    for (; k + 8 * width <= end; k += 8 * width) evaluate_polynomials<8>(group, numbers, lanes, k, written, out);
+    for (; k < end; k += width) evaluate_polynomials<1>(group, numbers, lanes, k, written, out);
+  }
+}
+
+/// Adds the terms of a step that have states.
+/// @param factor  [states of the chain]
+inline HWY_NOINLINE void add_stated_errors(const CompiledChain& chain, const AxisStep& step, const Lane* factor,
+                                           std::size_t end, AxisLanes& lanes) {
+  Lane value[6];
+  for (std::size_t g = step.plain_groups; g < step.groups.size(); ++g) {
+    const FunctionGroup& group = step.groups[g];
+    evaluate_group(group, chain.numbers.data(), lanes, end, 0, value);
+    const double* by = factor[group.state].v;
+    for (const Series& series : group.series) {
+      double* sum = lanes.error[series.component].v;
+      const double* added = value[series.component].v;
+      for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+        store(hn::MulAdd(load(added + k), load(by + k), load(sum + k)), sum + k);
+      }
+    }
+  }
+}
+
 /// Reads the commands of a step's axis and evaluates its error motions into lanes.error.
+/// @param factor  of the states of the chain; null if it has none
 inline HWY_NOINLINE void evaluate_axis(const CompiledChain& chain, const AxisStep& step, const double* commands,
-                                       std::size_t count, AxisLanes& lanes) {
+                                       std::size_t count, AxisLanes& lanes, const Lane* factor) {
   const std::size_t width = hn::Lanes(Tag()), end = whole_vectors(count);
   read_lane(commands, count, lanes.position);
   if (step.rotary) {
@@ -417,28 +455,16 @@ inline HWY_NOINLINE void evaluate_axis(const CompiledChain& chain, const AxisSte
   }
   if (!step.has_errors) return;
   unsigned written = 0;
-  const double* numbers = chain.numbers.data();
-  for (const FunctionGroup& group : step.groups) {
-    // Several vectors at a time hide the latency of the recurrences and share the coefficients, as many as registers
-    // hold; the last ones go singly, with the same operations.
-    std::size_t k = 0;
-    if (group.form == Form::pieces) {
-      for (; k < end; k += width) evaluate_pieces(group, numbers, lanes, k, written, lanes.error);
-    } else if (group.form == Form::fourier) {
-      for (; k + 2 * width <= end; k += 2 * width) evaluate_fourier<2>(group, numbers, lanes, k, written, lanes.error);
-      for (; k < end; k += width) evaluate_fourier<1>(group, numbers, lanes, k, written, lanes.error);
-    } else {
-      for (; k + 8 * width <= end; k += 8 * width) {
-        evaluate_polynomials<8>(group, numbers, lanes, k, written, lanes.error);
-      }
-      for (; k < end; k += width) evaluate_polynomials<1>(group, numbers, lanes, k, written, lanes.error);
-    }
+  for (std::size_t g = 0; g < step.plain_groups; ++g) {
+    const FunctionGroup& group = step.groups[g];
+    evaluate_group(group, chain.numbers.data(), lanes, end, written, lanes.error);
     for (const Series& series : group.series) written |= 1u << series.component;
   }
   for (int component = 0; component < 6; ++component) {
     if ((written >> component & 1) != 0) continue;
     for (std::size_t k = 0; k < end; k += width) store(hn::Zero(Tag()), lanes.error[component].v + k);
   }
+  if (step.plain_groups < step.groups.size()) add_stated_errors(chain, step, factor, end, lanes);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -6,22 +6,12 @@
 // After foreach_target.h:
 #include "abbe/errors/chain_kernel_inline.h"
 #include "abbe/errors/chain_kernel_slopes_inline.h"
+#include "abbe/errors/chain_kernel_sweep_inline.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace abbe::chain {
 namespace HWY_NAMESPACE {
 namespace {
-
-/// Swept from the seen point backwards: the point between two steps and, per row, what a displacement of it does.
-struct Sweep {
-  Lane point[3];
-  Lane force[kRowsAtOnce][3];
-  Lane moment[kRowsAtOnce][3];
-  Lane channel[kRowsAtOnce][8];  ///< derivative by what moves the present step; the last by several of them together
-  Lane by_command[kRowsAtOnce];
-  AxisLanes lanes;
-  Lane slope[6];  ///< derivative of the error motions by the command
-};
 
 /// Takes the error of a step back: the point before it, its force and moment, and channels EX .. EC.
 ///
@@ -187,9 +177,21 @@ HWY_NOINLINE void write_column(const Target& target, const Sweep& s, int channel
   }
 }
 
+/// The lane itself, or its product with the factor of a state.
+HWY_INLINE const Lane* with_state(std::size_t state, const Lane* lane, std::size_t end, StateSweep* states) {
+  if (state == kNoState) return lane;
+  const double* factor = states->states.factor[state].v;
+  for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+    const Vector value = load(factor + k);
+    store(lane == nullptr ? value : hn::Mul(load(lane->v + k), value), states->product.v + k);
+  }
+  return &states->product;
+}
+
 /// Columns of all selected coefficients of one basis, a few functions at a time.
 HWY_NOINLINE void write_basis(const CompiledChain& chain, const AxisStep& step, const BasisUse& use,
-                              const Selection& selection, const Target& target, std::size_t end, const Sweep& s) {
+                              const Selection& selection, const Target& target, std::size_t end, const Sweep& s,
+                              StateSweep* states) {
   const bool pieces =
       use.kind == BasisKind::bspline || use.kind == BasisKind::table_linear || use.kind == BasisKind::table_monotone;
   if (pieces) {
@@ -202,7 +204,7 @@ HWY_NOINLINE void write_basis(const CompiledChain& chain, const AxisStep& step, 
         const std::size_t parameter = selection.parameters[j];
         if (parameter < term.first_parameter || parameter >= past) continue;
         local_function(local, static_cast<double>(parameter - term.first_parameter), end, factor);
-        write_column(target, s, term.component, &factor, j);
+        write_column(target, s, term.component, with_state(use.state, &factor, end, states), j);
       }
     }
     return;
@@ -216,7 +218,8 @@ HWY_NOINLINE void write_basis(const CompiledChain& chain, const AxisStep& step, 
       for (std::size_t j = selection.begin(from); j < selection.end(past); ++j) {
         const std::size_t parameter = selection.parameters[j];
         if (parameter < from || parameter >= past) continue;
-        write_column(target, s, term.component, &sequence.function[2 + parameter - from], j);
+        const Lane* function = &sequence.function[2 + parameter - from];
+        write_column(target, s, term.component, with_state(use.state, function, end, states), j);
       }
     }
     first += number;
@@ -224,10 +227,11 @@ HWY_NOINLINE void write_basis(const CompiledChain& chain, const AxisStep& step, 
 }
 
 HWY_NOINLINE void write_errors(const CompiledChain& chain, const AxisStep& step, const Selection& selection,
-                               const Target& target, std::size_t end, bool commands, Sweep& s) {
-  for (const BasisUse& use : step.bases) write_basis(chain, step, use, selection, target, end, s);
+                               const Target& target, std::size_t end, bool commands, Sweep& s, StateSweep* states) {
+  for (const BasisUse& use : step.bases) write_basis(chain, step, use, selection, target, end, s, states);
   if (!commands) return;
-  evaluate_slopes(chain, step, s.lanes, end, s.slope);
+  evaluate_slopes(chain, step, s.lanes, end, states == nullptr ? nullptr : states->states.factor, s.slope);
+  if (states != nullptr) add_factors_of_errors(chain, step, target.rows, end, s, *states);
   for (std::size_t row = 0; row < target.rows; ++row) {
     for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
       Vector sum = load(s.by_command[row].v + k);
@@ -237,24 +241,14 @@ HWY_NOINLINE void write_errors(const CompiledChain& chain, const AxisStep& step,
   }
 }
 
-/// Channel 7 becomes the derivative by a location error that acts through several channels.
-HWY_NOINLINE void combine(const AxisStep::Location& location, std::size_t rows, std::size_t end, Sweep& s) {
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
-      Vector sum = hn::Zero(Tag());
-      for (int c = 0; c < 7; ++c) sum = hn::MulAdd(load(s.channel[row][c].v + k), set(location.effect[c]), sum);
-      store(sum, s.channel[row][7].v + k);
-    }
-  }
-}
-
 HWY_NOINLINE void write_motion(const AxisStep& step, const Selection& selection, const Target& target, std::size_t end,
-                               Sweep& s) {
+                               Sweep& s, StateSweep* states) {
   for (const AxisStep::Location& location : step.locations) {
     for (std::size_t j = selection.begin(location.parameter); j < selection.end(location.parameter + 1); ++j) {
       if (selection.parameters[j] != location.parameter) continue;
       if (location.only < 0) combine(location, target.rows, end, s);
-      write_column(target, s, location.only < 0 ? 7 : location.only, nullptr, j);
+      write_column(target, s, location.only < 0 ? 7 : location.only, with_state(location.state, nullptr, end, states),
+                   j);
     }
   }
   for (std::size_t row = 0; row < target.rows; ++row) {
@@ -314,10 +308,11 @@ HWY_NOINLINE void read_rows(const DifferentiateCall& call, std::size_t first_row
   }
 }
 
-void differentiate_rows(const CompiledChain& chain, const DifferentiateCall& call, std::size_t first_row,
-                        std::size_t rows) {
+/// @param states  null for a chain without states
+void differentiate_with(const CompiledChain& chain, const DifferentiateCall& call, std::size_t first_row,
+                        std::size_t rows, StateSweep* states) {
   const std::size_t count = call.positions.count, end = whole_vectors(count);
-  if (count == 0) return;
+  const Lane* factor = states == nullptr ? nullptr : states->states.factor;
   Sweep s;
   read_rows(call, first_row, rows, s);
   const Selection selection{call.parameters, std::is_sorted(call.parameters.begin(), call.parameters.end())};
@@ -337,17 +332,23 @@ void differentiate_rows(const CompiledChain& chain, const DifferentiateCall& cal
   for (std::size_t i = chain.steps.size(); i-- > 0;) {
     const AxisStep& step = chain.steps[i];
     const bool commands = call.by_position != nullptr;
-    evaluate_axis(chain, step, call.positions.axis[step.axis], count, s.lanes);
+    evaluate_axis(chain, step, call.positions.axis[step.axis], count, s.lanes, factor);
     for (std::size_t row = 0; row < rows; ++row) std::memset(s.by_command[row].v, 0, sizeof s.by_command[row].v);
     if (step.has_errors && !step.error_first) {
       take_back_error(step, rows, end, s);
-      write_errors(chain, step, selection, target, end, commands, s);
+      write_errors(chain, step, selection, target, end, commands, s, states);
     }
-    take_back_motion(step, rows, end, s);
-    write_motion(step, selection, target, end, s);
+    if (step.moving_line) {
+      displace_lines(step, factor, end, states->line);
+      take_back_moving_motion(step, rows, end, states->line, s);
+      if (commands) add_factors_of_locations(chain, step, rows, end, s, *states);
+    } else {
+      take_back_motion(step, rows, end, s);
+    }
+    write_motion(step, selection, target, end, s, states);
     if (step.has_errors && step.error_first) {
       take_back_error(step, rows, end, s);
-      write_errors(chain, step, selection, target, end, commands, s);
+      write_errors(chain, step, selection, target, end, commands, s, states);
     }
     if (!commands) continue;
     for (std::size_t row = 0; row < rows; ++row) {
@@ -357,12 +358,37 @@ void differentiate_rows(const CompiledChain& chain, const DifferentiateCall& cal
   }
   take_back_constant(chain.start, rows, end, s);
   if (chain.starts_at_tool) write_tool(chain, selection, target, 1.0, end, s);
+  if (states != nullptr && call.by_position != nullptr) {
+    add_factors_of_commands(chain, call, first_row, rows, end, *states);
+  }
   if (call.by_start == nullptr) return;
   for (std::size_t row = 0; row < rows; ++row) {
     const PointArrays& out = call.by_start[first_row + row];
     std::memcpy(out.x, s.force[row][0].v, count * sizeof(double));
     std::memcpy(out.y, s.force[row][1].v, count * sizeof(double));
     std::memcpy(out.z, s.force[row][2].v, count * sizeof(double));
+  }
+}
+
+HWY_NOINLINE void differentiate_with_states(const CompiledChain& chain, const DifferentiateCall& call,
+                                            std::size_t first_row, std::size_t rows) {
+  StateSweep states;
+  evaluate_states(chain, call.positions, 0, call.positions.count, states.states);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t s = 0; s < chain.states.size(); ++s) {
+      std::memset(states.by_factor[row][s].v, 0, sizeof states.by_factor[row][s].v);
+    }
+  }
+  differentiate_with(chain, call, first_row, rows, &states);
+}
+
+void differentiate_rows(const CompiledChain& chain, const DifferentiateCall& call, std::size_t first_row,
+                        std::size_t rows) {
+  if (call.positions.count == 0) return;
+  if (chain.states.empty()) {
+    differentiate_with(chain, call, first_row, rows, nullptr);
+  } else {
+    differentiate_with_states(chain, call, first_row, rows);
   }
 }
 

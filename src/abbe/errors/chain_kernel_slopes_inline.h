@@ -54,9 +54,10 @@ HWY_INLINE Vector piece_slope(const double* c, const Piece& piece) {
   return hn::Mul(hn::MulAdd(twice, piece.local, c1), piece.inverse_length);
 }
 
-/// d(EX .. EC)/d(command) of a step's axis, per mm or rad.
+/// d(EX .. EC)/d(command) of a step's axis at constant factors of states, per mm or rad.
+/// @param factor  of the states of the chain; null if it has none
 inline HWY_NOINLINE void evaluate_slopes(const CompiledChain& chain, const AxisStep& step, const AxisLanes& lanes,
-                                         std::size_t end, Lane* slope) {
+                                         std::size_t end, const Lane* factor, Lane* slope) {
   const double* numbers = chain.numbers.data();
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     for (int c = 0; c < 6; ++c) store(hn::Zero(Tag()), slope[c].v + k);
@@ -77,6 +78,7 @@ inline HWY_NOINLINE void evaluate_slopes(const CompiledChain& chain, const AxisS
         } else {
           value = hn::Mul(polynomial_slope(series, group.form, c, s), set(group.scale));
         }
+        if (group.state != kNoState) value = hn::Mul(value, load(factor[group.state].v + k));
         double* out = slope[series.component].v + k;
         store(hn::Add(load(out), value), out);
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -15,8 +16,11 @@ namespace abbe {
 namespace {
 
 using chain::AxisStep;
+using chain::CarriedLoads;
 using chain::CompiledChain;
 using chain::ConstantTransform;
+using chain::StateSource;
+using chain::WeighedSide;
 
 /// Beyond this the sine of a command has lost too many digits to be called covered.
 constexpr double kLargestTurn = 1e6;  // rad
@@ -63,6 +67,53 @@ std::vector<std::size_t> axes_of(const Machine& machine, Body body) {
   return axes;
 }
 
+/// Machine's states that errors of these axes use, with the factors of products; [states of the machine].
+std::vector<std::uint8_t> states_of_axes(const Machine& machine, const ErrorSet& errors,
+                                         std::span<const std::size_t> axes) {
+  std::vector<std::uint8_t> used(machine.states.size(), 0);
+  const auto note = [&](std::size_t axis, std::size_t state) {
+    if (state == kNoState || std::find(axes.begin(), axes.end(), axis) == axes.end()) return;
+    const MachineState& one = machine.states.at(state);
+    used[state] = 1;
+    if (one.kind == StateKind::product) used[one.first] = used[one.second] = 1;
+  };
+  for (const ErrorMotion& motion : errors.motions) note(motion.axis, motion.state);
+  for (const LocationError& location : errors.locations) note(location.axis, location.state);
+  return used;
+}
+
+/// Axes of the side of a gravity state, as far as its loads are carried, and the loads by axis.
+void add_loads(const Machine& machine, const MachineState& state, CompiledChain& chain, StateSource& source) {
+  const Body body = machine.axes[state.axis].side == ChainSide::tool ? Body::tool : Body::workpiece;
+  const std::vector<std::size_t> outwards = axes_of(machine, body);
+  source.side = 0;
+  while (source.side < chain.sides.size() && chain.sides[source.side].axes.front().axis != outwards.front()) {
+    ++source.side;
+  }
+  if (source.side == chain.sides.size()) chain.sides.emplace_back();
+  std::vector<WeighedSide::Line>& axes = chain.sides[source.side].axes;
+  const auto place = [&](std::size_t axis) {
+    return static_cast<std::size_t>(std::find(outwards.begin(), outwards.end(), axis) - outwards.begin());
+  };
+  source.about = place(state.axis);
+  for (const GravityLoad& load : state.loads) {
+    const std::size_t at = place(load.carried_by);
+    for (std::size_t i = axes.size(); i <= at; ++i) {
+      const Axis& axis = machine.axes[outwards[i]];
+      WeighedSide::Line line{outwards[i], axis.kind == AxisKind::rotary, axis.sense()};
+      for (int k = 0; k < 3; ++k) line.direction[k] = axis.direction[k];
+      for (int k = 0; k < 3; ++k) line.point[k] = axis.point[k];
+      axes.push_back(line);
+    }
+    const auto known = std::find_if(source.loads.begin(), source.loads.end(),
+                                    [&](const CarriedLoads& other) { return other.at == at; });
+    CarriedLoads& loads = known == source.loads.end() ? source.loads.emplace_back() : *known;
+    loads.at = at;
+    loads.mass += load.mass_kg;
+    for (int k = 0; k < 3; ++k) loads.moment[k] += load.mass_kg * load.point[k];
+  }
+}
+
 AxisStep::Location channels_of(const LocationEffect& effect, std::size_t parameter) {
   AxisStep::Location location{parameter};
   for (int k = 0; k < 3; ++k) location.effect[k] = effect.shift[k];
@@ -83,8 +134,35 @@ struct ChainPlan::Implementation {
   };
   CompiledChain chain;
   chain::FunctionCompiler functions;
-  std::vector<Line> lines;  ///< nominal, per step
+  std::vector<Line> lines;                  ///< nominal, per step
+  std::vector<std::size_t> compiled_state;  ///< [states of the machine] index into CompiledChain::states or kNoState
   std::size_t parameter_count = 0;
+
+  void add_states(const Machine& machine, const std::vector<std::uint8_t>& used) {
+    compiled_state.assign(machine.states.size(), kNoState);
+    if (std::find(used.begin(), used.end(), std::uint8_t{1}) == used.end()) return;
+    assert(machine.states.size() <= kMaxStates);
+    for (int k = 0; k < 3; ++k) chain.weight[k] = 1e-3 * machine.gravity[k];
+    for (const bool products : {false, true}) {
+      for (std::size_t j = 0; j < used.size(); ++j) {
+        const MachineState& state = machine.states[j];
+        if (used[j] == 0 || (state.kind == StateKind::product) != products) continue;
+        StateSource source;
+        source.kind = state.kind;
+        source.given = j;
+        source.reference = state.reference;
+        source.axis = state.axis;
+        source.moves = depends_on_commands(machine, j);
+        if (products) {
+          source.first = compiled_state[state.first];
+          source.second = compiled_state[state.second];
+        }
+        if (state.kind == StateKind::gravity) add_loads(machine, state, chain, source);
+        compiled_state[j] = chain.states.size();
+        chain.states.push_back(std::move(source));
+      }
+    }
+  }
 
   void add_step(const Machine& machine, const ErrorSet& errors, std::size_t index, bool inverted) {
     const Axis& axis = machine.axes[index];
@@ -99,19 +177,22 @@ struct ChainPlan::Implementation {
     step.first_order = errors.composition.first_order;
     step.sign = inverted ? -axis.sense() : axis.sense();
     for (int k = 0; k < 3; ++k) step.reference[k] = axis.point[k];
+    for (int k = 0; k < 3; ++k) step.nominal_direction[k] = axis.direction[k];
     step.has_reference = !axis.point.isZero(0);
     set_range(step, errors);
     std::size_t parameter = first_reversal(errors) - errors.locations.size();
     for (const LocationError& location : errors.locations) {
       if (location.axis == index) {
         step.locations.push_back(channels_of(location_effect(axis, location.component), parameter));
+        if (location.state != kNoState) step.locations.back().state = compiled_state[location.state];
+        step.moving_line = step.moving_line || location.state != kNoState;
         chain.influences[parameter] = 1;
       }
       ++parameter;
     }
     chain.steps.push_back(std::move(step));
     lines.push_back({axis.direction, axis.point});
-    functions.add_terms(chain, chain.steps.size() - 1, errors);
+    functions.add_terms(chain, chain.steps.size() - 1, errors, compiled_state);
     parameter = 0;
     for (const ErrorMotion& motion : errors.motions) {
       if (motion.axis == index) std::fill_n(&chain.influences[parameter], motion.coefficients.size(), std::uint8_t{1});
@@ -122,8 +203,12 @@ struct ChainPlan::Implementation {
   void displace_line(AxisStep& step, const Line& line, std::span<const double> values) const {
     Eigen::Vector3d tilt = Eigen::Vector3d::Zero(), centre = line.point;
     step.zero_position = 0;
-    for (const AxisStep::Location& location : step.locations) {
+    std::fill(std::begin(step.fixed_effect), std::end(step.fixed_effect), 0.0);
+    for (AxisStep::Location& location : step.locations) {
       const double value = values[location.parameter];
+      location.value = value;
+      if (location.state != kNoState) continue;
+      for (int k = 0; k < 7; ++k) step.fixed_effect[k] += value * location.effect[k];
       for (int k = 0; k < 3; ++k) centre[k] += value * location.effect[k];
       for (int k = 0; k < 3; ++k) tilt[k] += value * location.effect[3 + k];
       step.zero_position += value * location.effect[6];
@@ -159,8 +244,12 @@ ChainPlan::ChainPlan(const Machine& machine, const ErrorSet& errors, Body from, 
   set_transform(chain.end, machine_from_body(machine, to).inverse());
   std::vector<std::size_t> towards_bed = axes_of(machine, from);
   std::reverse(towards_bed.begin(), towards_bed.end());
+  std::vector<std::size_t> axes = towards_bed;
+  const std::vector<std::size_t> from_bed = axes_of(machine, to);
+  axes.insert(axes.end(), from_bed.begin(), from_bed.end());
+  implementation_->add_states(machine, states_of_axes(machine, errors, axes));
   for (const std::size_t axis : towards_bed) implementation_->add_step(machine, errors, axis, false);
-  for (const std::size_t axis : axes_of(machine, to)) implementation_->add_step(machine, errors, axis, true);
+  for (const std::size_t axis : from_bed) implementation_->add_step(machine, errors, axis, true);
   set_parameters(errors.parameters());
 }
 

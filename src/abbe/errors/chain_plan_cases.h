@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -102,12 +104,79 @@ inline Case random_case(std::uint64_t seed, double size, ErrorOrder order = Erro
   return c;
 }
 
+/// Adds states of every kind and has errors depend on them: error motions as they are drawn, location errors besides
+/// those that are there.
+/// @param chance  one of so many error motions gets a state
+inline void add_random_states(Case& c, std::uint64_t seed, double size, std::size_t chance = 2) {
+  RandomStream random(seed, 11);
+  Machine& machine = c.machine;
+  machine.gravity = random_vector(random, 10);
+  const auto any_axis = [&] { return static_cast<std::size_t>(random.bits() % machine.axes.size()); };
+  machine.states.push_back({.name = "ambient", .unit = "degC", .reference = 20});
+  machine.states.push_back(
+      {.name = "core", .kind = StateKind::lag, .unit = "degC", .reference = 20, .first = 0, .time_constant = 100});
+  machine.states.push_back({.name = "side", .kind = StateKind::approach, .axis = any_axis()});
+  MachineState ram{.name = "ram", .kind = StateKind::axis, .axis = any_axis()};
+  const bool rotary = machine.axes[ram.axis].kind == AxisKind::rotary;
+  ram.reference = rotary ? 0.3 : 40;
+  machine.states.push_back(ram);
+  for (const char* name : {"torque", "sag"}) {
+    MachineState torque{.name = name, .kind = StateKind::gravity, .axis = any_axis()};
+    const bool tool = machine.axes[torque.axis].side == ChainSide::tool;
+    for (std::size_t load = 0; load < 3; ++load) {
+      // From the axis outwards, which is up the chain on the side of the tool and down on that of the workpiece.
+      const std::size_t span = tool ? machine.axes.size() - torque.axis : torque.axis + 1;
+      const std::size_t way = random.bits() % span;
+      torque.loads.push_back(
+          {tool ? torque.axis + way : torque.axis - way, random.uniform(0.1, 2), random_vector(random, 300)});
+    }
+    machine.states.push_back(torque);
+  }
+  machine.states.push_back({.name = "payload", .unit = "kg"});
+  const auto product = [&](const char* name, const char* first, const char* second) {
+    MachineState state{.name = name, .kind = StateKind::product};
+    state.first = find_state(machine, first);
+    state.second = find_state(machine, second);
+    machine.states.push_back(state);
+  };
+  product("loaded", "payload", "torque");
+  product("bent", "ram", "sag");
+  product("square", "ram", "ram");
+  const auto any_state = [&] { return static_cast<std::size_t>(random.bits() % machine.states.size()); };
+  for (ErrorMotion& motion : c.errors.motions) {
+    if (random.bits() % chance == 0) motion.state = any_state();
+  }
+  const std::vector<LocationError> plain = c.errors.locations;
+  for (LocationError location : plain) {
+    if (random.bits() % chance != 0) continue;
+    location.state = any_state();
+    location.value = random.uniform(-size, size) * (is_rotation(location.component) ? 1e-2 : 1.0);
+    c.errors.locations.push_back(location);
+  }
+  // Of the size of an error, whatever the factor is.
+  const auto usual_factor = [&](std::size_t state) {
+    const std::string unit = factor_unit(machine, state);
+    double usual = 1;
+    if (unit.find("mm") != std::string::npos) usual *= 100;
+    if (machine.states[state].kind == StateKind::product) usual *= 10;
+    return usual;
+  };
+  for (ErrorMotion& motion : c.errors.motions) {
+    if (motion.state == kNoState) continue;
+    for (double& value : motion.coefficients) value /= usual_factor(motion.state);
+  }
+  for (LocationError& location : c.errors.locations) {
+    if (location.state != kNoState) location.value /= usual_factor(location.state);
+  }
+}
+
 /// The independent route: from a body to the bed by actual_pose.h; a point of the tool from the gauge point.
-inline RigidTransform bed_from_body(const Case& c, const std::vector<double>& positions, Body body) {
-  if (body == Body::workpiece) return actual_bed_from_workpiece(c.machine, c.errors, positions);
+inline RigidTransform bed_from_body(const Case& c, const std::vector<double>& positions, Body body,
+                                    std::span<const double> given = {}) {
+  if (body == Body::workpiece) return actual_bed_from_workpiece(c.machine, c.errors, positions, given);
   if (body == Body::tool) {
     const Eigen::Vector3d offset = c.machine.tool_offset + c.errors.tool_offset_error;
-    return actual_bed_from_tool(c.machine, c.errors, positions) * RigidTransform::translate(-offset);
+    return actual_bed_from_tool(c.machine, c.errors, positions, given) * RigidTransform::translate(-offset);
   }
   return {};
 }
@@ -118,7 +187,8 @@ struct Batch {
   std::array<std::vector<double>, 3> start, seen;
   std::array<std::vector<double>, 9> rotation;
   std::vector<std::uint8_t> covered;
-  std::vector<const double*> pointers;
+  std::vector<std::vector<double>> states;  ///< [states of the machine] of measured and lag states and approaches
+  std::vector<const double*> pointers, state_pointers;
 
   Batch(const Machine& machine, std::size_t count, RandomStream& random) {
     for (const Axis& axis : machine.axes) {
@@ -132,12 +202,28 @@ struct Batch {
     for (std::vector<double>& values : seen) values.assign(count, -1e300);
     for (std::vector<double>& values : rotation) values.assign(count, -1e300);
     covered.assign(count, 7);
+    for (const MachineState& state : machine.states) {
+      std::vector<double>& values = states.emplace_back();
+      if (state.kind == StateKind::approach) {
+        for (std::size_t k = 0; k < count; ++k) values.push_back(static_cast<double>(random.bits() % 3) - 1);
+      } else if (is_input(state.kind)) {
+        for (std::size_t k = 0; k < count; ++k) values.push_back(state.reference + random.uniform(-3, 3));
+      }
+    }
   }
   std::size_t count() const { return covered.size(); }
   PositionArrays positions() {
     pointers.clear();
     for (const std::vector<double>& values : commands) pointers.push_back(values.data());
-    return {pointers, count()};
+    state_pointers.clear();
+    for (const std::vector<double>& values : states) state_pointers.push_back(values.empty() ? nullptr : values.data());
+    return {pointers, count(), state_pointers};
+  }
+  /// As state_factor() takes them.
+  std::vector<double> given_at(std::size_t k) const {
+    std::vector<double> given;
+    for (const std::vector<double>& values : states) given.push_back(values.empty() ? std::nan("") : values[k]);
+    return given;
   }
   std::vector<double> positions_of(std::size_t k) const {
     std::vector<double> values;

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace abbe {
 namespace {
@@ -12,6 +13,10 @@ int principal_direction(const Axis& axis) {
     if (std::abs(std::abs(axis.direction[k]) - 1.0) < 1e-12) return k;
   }
   return -1;
+}
+
+std::string state_suffix(const Machine& machine, std::size_t state) {
+  return state == kNoState ? std::string() : "*" + machine.states.at(state).name;
 }
 
 }  // namespace
@@ -47,11 +52,16 @@ void ErrorSet::set_parameters(const std::vector<double>& values) {
   for (int k = 0; k < 3; ++k) tool_offset_error[k] = values[next++];
 }
 
-std::array<double, kComponentCount> ErrorSet::evaluate(std::size_t axis, double position) const {
+std::array<double, kComponentCount> ErrorSet::evaluate(std::size_t axis, double position,
+                                                       std::span<const double> factors) const {
   std::array<double, kComponentCount> sum{};
   for (const ErrorMotion& motion : motions) {
     if (motion.axis != axis) continue;
-    sum[static_cast<std::size_t>(motion.component)] += motion.basis.evaluate(position, motion.coefficients);
+    double value = motion.basis.evaluate(position, motion.coefficients);
+    if (motion.state != kNoState) {
+      value *= factors.empty() ? std::numeric_limits<double>::quiet_NaN() : factors[motion.state];
+    }
+    sum[static_cast<std::size_t>(motion.component)] += value;
   }
   return sum;
 }
@@ -63,12 +73,12 @@ bool ErrorSet::covers(std::size_t axis, double position) const {
   return true;
 }
 
-std::string error_motion_name(const Machine& machine, std::size_t axis, Component component) {
-  return std::string("E") + component_letter(component) + machine.axes[axis].name;
+std::string error_motion_name(const Machine& machine, std::size_t axis, Component component, std::size_t state) {
+  return std::string("E") + component_letter(component) + machine.axes[axis].name + state_suffix(machine, state);
 }
 
-std::string location_error_name(const Machine& machine, std::size_t axis, Component component) {
-  return std::string("E") + component_letter(component) + "0" + machine.axes[axis].name;
+std::string location_error_name(const Machine& machine, std::size_t axis, Component component, std::size_t state) {
+  return std::string("E") + component_letter(component) + "0" + machine.axes[axis].name + state_suffix(machine, state);
 }
 
 std::string reversal_name(const Machine& machine, std::size_t axis) { return "reversal_" + machine.axes[axis].name; }
@@ -78,13 +88,13 @@ std::vector<std::string> parameter_names(const Machine& machine, const ErrorSet&
   names.reserve(errors.parameter_count());
   for (const ErrorMotion& motion : errors.motions) {
     const bool rotary = machine.axes[motion.axis].kind == AxisKind::rotary;
-    const std::string name = error_motion_name(machine, motion.axis, motion.component);
+    const std::string name = error_motion_name(machine, motion.axis, motion.component, motion.state);
     for (std::size_t k = 0; k < motion.coefficients.size(); ++k) {
       names.push_back(name + "[" + motion.basis.function_name(k, rotary) + "]");
     }
   }
   for (const LocationError& location : errors.locations) {
-    names.push_back(location_error_name(machine, location.axis, location.component));
+    names.push_back(location_error_name(machine, location.axis, location.component, location.state));
   }
   for (const Reversal& reversal : errors.reversals) names.push_back(reversal_name(machine, reversal.axis));
   for (const char* name : {"tool_X", "tool_Y", "tool_Z"}) names.emplace_back(name);

@@ -29,9 +29,15 @@ ErrorSet without_errors(const ErrorSet& like) {
 template <class Visit>
 void for_each_part(PositionArrays positions, const Visit& visit) {
   std::array<const double*, kMaxAxes> axis{};
+  std::array<const double*, kMaxStates> state{};
   for (std::size_t first = 0; first < positions.count; first += kPart) {
     for (std::size_t i = 0; i < positions.axis.size(); ++i) axis[i] = positions.axis[i] + first;
-    visit(first, PositionArrays{{axis.data(), positions.axis.size()}, std::min(kPart, positions.count - first)});
+    for (std::size_t j = 0; j < positions.state.size(); ++j) {
+      state[j] = positions.state[j] == nullptr ? nullptr : positions.state[j] + first;
+    }
+    visit(first, PositionArrays{{axis.data(), positions.axis.size()},
+                                std::min(kPart, positions.count - first),
+                                {state.data(), positions.state.size()}});
   }
 }
 

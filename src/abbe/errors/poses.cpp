@@ -1,13 +1,38 @@
 #include "abbe/errors/poses.h"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace abbe {
 
 PoseSource pose_source(const PoseList& list) {
-  return {list.axis.size(), list.count(), [&list](std::size_t first, std::size_t number, double* const* axis) {
-            for (std::size_t i = 0; i < list.axis.size(); ++i) std::copy_n(&list.axis[i][first], number, axis[i]);
-          }};
+  PoseSource source{list.axis.size(), list.count(),
+                    [&list](std::size_t first, std::size_t number, double* const* axis) {
+                      for (std::size_t i = 0; i < list.axis.size(); ++i) {
+                        std::copy_n(&list.axis[i][first], number, axis[i]);
+                      }
+                    }};
+  if (list.state.empty()) return source;
+  source.states = list.state.size();
+  source.fill_states = [&list](std::size_t first, std::size_t number, double* const* state) {
+    for (std::size_t j = 0; j < list.state.size(); ++j) {
+      if (list.state[j].empty()) {
+        std::fill_n(state[j], number, std::numeric_limits<double>::quiet_NaN());
+      } else {
+        std::copy_n(&list.state[j][first], number, state[j]);
+      }
+    }
+  };
+  return source;
+}
+
+PoseSource at_states(PoseSource poses, std::vector<double> values) {
+  poses.states = values.size();
+  poses.fill_states = [values = std::move(values)](std::size_t, std::size_t number, double* const* state) {
+    for (std::size_t j = 0; j < values.size(); ++j) std::fill_n(state[j], number, values[j]);
+  };
+  return poses;
 }
 
 PoseSource pose_source(PoseGrid grid) {
@@ -51,12 +76,30 @@ void join_labels(std::vector<std::string>& all, std::size_t count, const std::ve
   all.resize(count + more_count);
 }
 
+namespace {
+
+void join_states(PoseList& all, std::size_t before, const PoseList& more) {
+  const double not_given = std::numeric_limits<double>::quiet_NaN();
+  all.state.resize(std::max(all.state.size(), more.state.size()));
+  for (std::size_t j = 0; j < all.state.size(); ++j) {
+    const bool has_more = j < more.state.size() && !more.state[j].empty();
+    std::vector<double>& values = all.state[j];
+    if (values.empty() && !has_more) continue;
+    values.resize(before, not_given);
+    if (has_more) values.insert(values.end(), more.state[j].begin(), more.state[j].end());
+    values.resize(all.count(), not_given);
+  }
+}
+
+}  // namespace
+
 void join_poses(PoseList& all, const PoseList& more) {
   const std::size_t before = all.count();
   all.axis.resize(more.axis.size());
   for (std::size_t i = 0; i < more.axis.size(); ++i) {
     all.axis[i].insert(all.axis[i].end(), more.axis[i].begin(), more.axis[i].end());
   }
+  join_states(all, before, more);
   if (all.approach.empty() && more.approach.empty()) return;
   all.approach.resize(more.axis.size());
   for (std::size_t i = 0; i < more.axis.size(); ++i) {

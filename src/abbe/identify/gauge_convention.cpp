@@ -28,7 +28,8 @@ class AxisFunctionals {
     std::size_t next = 0;
     bool any = false;
     for (const ErrorMotion& motion : errors.motions) {
-      if (motion.axis == axis) {
+      // Terms with a state are none of the constants and lines that these conventions are about.
+      if (motion.axis == axis && motion.state == kNoState) {
         terms_.push_back({&motion, next});
         const bool turn = motion.basis.kind == BasisKind::fourier || motion.basis.periodic;
         whole_turn_ = whole_turn_ && turn;
@@ -236,6 +237,7 @@ std::vector<std::vector<Index>> places_of_locations(const Problem& problem, std:
     const std::size_t index = problem.machine_parameters[i];
     if (index < motion_parameters || index >= motion_parameters + problem.errors.locations.size()) continue;
     const LocationError& location = problem.errors.locations[index - motion_parameters];
+    if (location.state != kNoState) continue;
     places[location.axis][static_cast<std::size_t>(location.component)] = static_cast<Index>(i);
   }
   return places;

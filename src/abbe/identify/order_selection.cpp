@@ -267,6 +267,7 @@ std::vector<OrderGroup> order_groups_by_axis(const Machine& machine, const Error
       group.nested = nested;
       group.largest_order = 0;
       for (std::size_t m = 0; m < errors.motions.size(); ++m) {
+        if (errors.motions[m].state != kNoState) continue;
         if (errors.motions[m].axis != axis || is_nested(errors.motions[m].basis) != nested) continue;
         group.motions.push_back(m);
         group.largest_order = std::max(group.largest_order, order_of(errors.motions[m].basis));

@@ -11,6 +11,10 @@ namespace {
 
 constexpr double kParallel = 0.99;
 
+std::string words_of_state(const Machine& machine, std::size_t state) {
+  return state == kNoState ? std::string() : " with " + machine.states[state].name;
+}
+
 /// The error a machine parameter belongs to: "EXX" with its words.
 std::string words_of(const Problem& problem, std::size_t index) {
   const Machine& machine = problem.machine;
@@ -18,14 +22,14 @@ std::string words_of(const Problem& problem, std::size_t index) {
   for (const ErrorMotion& motion : problem.errors.motions) {
     next += motion.coefficients.size();
     if (index < next) {
-      return error_motion_name(machine, motion.axis, motion.component) + ": " +
-             error_words(machine, motion.axis, motion.component, false);
+      return error_motion_name(machine, motion.axis, motion.component, motion.state) + ": " +
+             error_words(machine, motion.axis, motion.component, false) + words_of_state(machine, motion.state);
     }
   }
   if (index - next < problem.errors.locations.size()) {
     const LocationError& location = problem.errors.locations[index - next];
-    return location_error_name(machine, location.axis, location.component) + ": " +
-           error_words(machine, location.axis, location.component, true);
+    return location_error_name(machine, location.axis, location.component, location.state) + ": " +
+           error_words(machine, location.axis, location.component, true) + words_of_state(machine, location.state);
   }
   next += problem.errors.locations.size();
   if (index - next < problem.errors.reversals.size()) {

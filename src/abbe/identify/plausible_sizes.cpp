@@ -85,6 +85,7 @@ PlausibleSizes plausible_sizes(const Machine& machine, std::size_t axis) {
 std::vector<Distrust> distrust_of_sizes(const Machine& machine, const ErrorSet& errors) {
   SizeCheck sizes;
   for (const ErrorMotion& motion : errors.motions) {
+    if (motion.state != kNoState) continue;  // per unit of a factor, of which no usual size is known
     const PlausibleSizes limits = plausible_sizes(machine, motion.axis);
     const bool angle = is_rotation(motion.component);
     const SpreadOfMotion spread = spread_of(motion);
@@ -93,6 +94,7 @@ std::vector<Distrust> distrust_of_sizes(const Machine& machine, const ErrorSet& 
     sizes.check(name, "varies about its mean by", spread.largest, angle ? limits.angle : limits.motion, angle);
   }
   for (const LocationError& location : errors.locations) {
+    if (location.state != kNoState) continue;
     const PlausibleSizes limits = plausible_sizes(machine, location.axis);
     const bool angle = is_rotation(location.component);
     sizes.check(location_error_name(machine, location.axis, location.component), "is", location.value,

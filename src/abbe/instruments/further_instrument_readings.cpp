@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/instruments/further_readings.h"
 #include "abbe/instruments/instrument_observations.h"
@@ -149,6 +150,7 @@ class InstrumentTrials {
       for (const std::vector<double>& column : readings.inputs) inputs.push_back(column[base]);
       result.append(pose, item, inputs);
     }
+    stand_at_references(machine, result.poses);
     return result;
   }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/instruments/further_readings.h"
 #include "abbe/instruments/trackers/tracker_observations.h"
@@ -134,7 +135,9 @@ class TrackerTrials {
     options.line_of_sight = false;
     options.sights = sights;
     options.choice = sights.size() > 3 ? SightChoice::cycle : SightChoice::every;
-    const TrackerReadings readings = simulate_tracker(machine_, errors_, setup, trial_poses, options).readings;
+    PoseList at_references = trial_poses;
+    stand_at_references(machine_, at_references);
+    const TrackerReadings readings = simulate_tracker(machine_, errors_, setup, at_references, options).readings;
     if (readings.count() == 0) return;
     FurtherReadings further;
     further.words = std::move(words);

@@ -83,6 +83,9 @@ InstrumentReadings InstrumentReadings::subset(const std::vector<std::size_t>& re
     std::vector<std::int8_t>& picked_sides = part.poses.approach.emplace_back();
     for (const std::size_t k : readings) picked_sides.push_back(sides[k]);
   }
+  for (const std::vector<double>& values : poses.state) {
+    part.poses.state.push_back(values.empty() ? values : picked(values, readings));
+  }
   for (const std::vector<double>& column : inputs) part.inputs.push_back(picked(column, readings));
   for (const std::vector<double>& column : measured) part.measured.push_back(picked(column, readings));
   for (const std::vector<double>& column : uncertainty) part.uncertainty.push_back(picked(column, readings));
@@ -220,6 +223,11 @@ void check_readings(const Machine& machine, const Instrument& instrument, const 
   for (const std::vector<std::int8_t>& sides : readings.poses.approach) {
     if (sides.size() != count || readings.poses.approach.size() != machine.axes.size()) {
       throw std::invalid_argument(instrument.name() + ": sides of approach, not one per axis and reading");
+    }
+  }
+  for (const std::vector<double>& values : readings.poses.state) {
+    if (readings.poses.state.size() != machine.states.size() || (!values.empty() && values.size() != count)) {
+      throw std::invalid_argument(instrument.name() + ": values of states, not one per state and reading");
     }
   }
   check_columns(readings.inputs, instrument.inputs().size(), count, "inputs");

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/instruments/reading_covariance.h"
 
@@ -21,8 +22,8 @@ static_assert(Observations::kBlockSize <= ChainPlan::kBlockSize);
 /// Working memory of one thread, grown once and kept.
 struct InstrumentScratch {
   static constexpr std::size_t kBlock = Observations::kBlockSize;
-  std::vector<double> positions, inputs, by_quantity, jacobian, by_position;
-  std::vector<const double*> axis;
+  std::vector<double> positions, states, inputs, by_quantity, jacobian, by_position;
+  std::vector<const double*> axis, state;
   ItemBlock block;
   double rotation[9][kBlock], start[3][kBlock], seen[3][kBlock], origin[3][kBlock];
   double value[kMaxRows * kBlock], by_motion[kMaxRows * 6 * kBlock];
@@ -57,6 +58,7 @@ struct InstrumentObservations::Implementation {
   std::size_t tool_parameter = 0;
   Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();
   ReversalShift reversal;
+  GivenStates given_states;
 
   std::size_t rows() const { return instrument->components().size(); }
   static std::size_t lower(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }
@@ -123,6 +125,7 @@ void InstrumentObservations::Implementation::load(const BodyPair& pair, std::siz
       for (std::size_t k = 0; k < members; ++k) commands[k] += reversal.shift(readings.poses, i, first + s.at[k]);
     }
   }
+  given_states.gather(readings.poses, first, {s.at, members}, kBlockSize, s.states, s.state);
   gather(readings.inputs, s.inputs, s.block.inputs);
   const bool on_tool = pair.from == Body::tool;
   for (int c = 0; c < 3; ++c) std::fill_n(s.start[c], members, on_tool ? tool_offset_error[c] : 0.0);
@@ -132,8 +135,8 @@ void InstrumentObservations::Implementation::see(const BodyPair& pair, std::size
                                                  InstrumentScratch& s) const {
   RotationArrays rotation;
   for (int i = 0; i < 9; ++i) rotation.r[i] = s.rotation[i];
-  pair.plan.transform({s.axis, members}, {s.start[0], s.start[1], s.start[2]}, {s.seen[0], s.seen[1], s.seen[2]},
-                      rotation);
+  pair.plan.transform({s.axis, members, s.state}, {s.start[0], s.start[1], s.start[2]},
+                      {s.seen[0], s.seen[1], s.seen[2]}, rotation);
   const bool from_tool = pair.to == Body::tool;
   for (int c = 0; c < 3; ++c) {
     for (std::size_t k = 0; k < members; ++k) {
@@ -226,9 +229,9 @@ void InstrumentObservations::Implementation::evaluate_pair(const BodyPair& pair,
     s.by_position.resize(s.axis.size() * compact_stride);
     by_position = s.by_position.data();
   }
-  pair.plan.differentiate({s.axis, members}, {s.start[0], s.start[1], s.start[2]}, {s.seen[0], s.seen[1], s.seen[2]},
-                          {row_arrays, rows()}, machine_parameters, s.jacobian.data(), compact_stride, nullptr,
-                          by_position);
+  pair.plan.differentiate({s.axis, members, s.state}, {s.start[0], s.start[1], s.start[2]},
+                          {s.seen[0], s.seen[1], s.seen[2]}, {row_arrays, rows()}, machine_parameters,
+                          s.jacobian.data(), compact_stride, nullptr, by_position);
   for (std::size_t column = 0; by_position != nullptr && column < machine_parameters.size(); ++column) {
     const std::size_t axis = reversal.axis_of(machine_parameters[column]);
     if (axis == ReversalShift::npos) continue;
@@ -301,6 +304,8 @@ InstrumentObservations::InstrumentObservations(const Machine& machine, const Err
   own.tool_parameter = errors.parameter_count() - 3;
   own.tool_offset_error = errors.tool_offset_error;
   own.reversal = ReversalShift(errors);
+  own.given_states = GivenStates(machine, errors);
+  require_states(machine, errors, own.readings.poses);
   if (own.readings.covariance.empty()) {
     own.take_uncertainties();
   } else {

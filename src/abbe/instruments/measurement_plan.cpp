@@ -237,6 +237,10 @@ PoseList order_by_travel(const Machine& machine, const PoseList& poses) {
   for (std::size_t i = 0; i < poses.axis.size(); ++i) {
     for (std::size_t k = 0; k < n; ++k) ordered.axis[i][k] = poses.axis[i][order[k]];
   }
+  for (const std::vector<double>& values : poses.state) {
+    std::vector<double>& moved = ordered.state.emplace_back();
+    for (std::size_t k = 0; k < values.size(); ++k) moved.push_back(values[order[k]]);
+  }
   return ordered;
 }
 

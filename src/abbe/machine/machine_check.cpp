@@ -5,7 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "abbe/geometry/rotation.h"
@@ -18,6 +20,10 @@ constexpr double kDependentSine = 1e-3;  // sine of an angle: directions count a
 // Sine and cosine keep their digits up to here; a travel beyond it, or of more than 10 km, is a wrong unit.
 constexpr double kLargestAngle = 20000;   // rad
 constexpr double kLargestPosition = 1e7;  // mm
+
+/// What files of readings have besides commands, states and what is measured.
+constexpr std::string_view kReadingColumns[] = {"time",      "point", "item",   "station",
+                                                "reflector", "setup", "target", "direction"};
 
 std::string ten_digits(double value) { return fmt::format("{:.10g}", value); }
 
@@ -50,6 +56,7 @@ class Checker {
     check_finite("", "tool_reference", machine_.tool_reference);
     check_finite("", "tool_offset", machine_.tool_offset);
     check_frame();
+    check_states();
     return problems_;
   }
 
@@ -129,7 +136,86 @@ class Checker {
     }
   }
 
+  void check_states() {
+    check_finite("", "gravity", machine_.gravity);
+    if (machine_.states.size() > kMaxStates) report("", "states", fmt::format("more than {} states", kMaxStates));
+    for (std::size_t i = 0; i < machine_.states.size(); ++i) {
+      const MachineState& state = machine_.states[i];
+      state_ = state.name;
+      const bool sound = !state.name.empty() && std::all_of(state.name.begin(), state.name.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+      });
+      if (!sound) report_state("name", "must be letters, digits and _");
+      if (machine_.find_axis(state.name) != Machine::npos) report_state("name", "is the name of an axis");
+      const bool reserved =
+          std::find(std::begin(kReadingColumns), std::end(kReadingColumns), state.name) != std::end(kReadingColumns);
+      if (reserved) report_state("name", "is the name of a column of readings");
+      if (find_state(machine_, state.name) != i) report_state("name", "is used twice");
+      if (!std::isfinite(state.reference)) report_state("reference", "is not finite");
+      check_state(state);
+    }
+  }
+
+  void check_state(const MachineState& state) {
+    const auto is = [&](std::size_t index, StateKind kind) {
+      return index < machine_.states.size() && machine_.states[index].kind == kind;
+    };
+    switch (state.kind) {
+      case StateKind::lag:
+        if (!is(state.first, StateKind::measured)) report_state("of", "is not a measured state");
+        if (!(state.time_constant > 0) || !std::isfinite(state.time_constant)) {
+          report_state("time_constant", "is not above 0 s");
+        }
+        [[fallthrough]];
+      case StateKind::measured:
+        if (std::find(std::begin(kStateUnits), std::end(kStateUnits), state.unit) == std::end(kStateUnits)) {
+          report_state("unit", "'" + state.unit + "' is not a unit of states: degC, K, Nm, N, kg, rpm, s, 1");
+        }
+        break;
+      case StateKind::axis:
+      case StateKind::approach:
+        if (state.axis >= machine_.axes.size()) report_state("axis", "is not an axis of this machine");
+        break;
+      case StateKind::gravity:
+        check_loads(state);
+        break;
+      case StateKind::product:
+        for (const std::size_t factor : {state.first, state.second}) {
+          if (factor >= machine_.states.size() || is(factor, StateKind::product)) {
+            report_state("of", "does not name two states that are not products themselves");
+          }
+        }
+        break;
+    }
+  }
+
+  void check_loads(const MachineState& state) {
+    if (state.axis >= machine_.axes.size()) {
+      report_state("about", "is not an axis of this machine");
+      return;
+    }
+    if (state.loads.empty()) report_state("load", "a torque of gravity needs at least one load");
+    const ChainSide side = machine_.axes[state.axis].side;
+    for (const GravityLoad& load : state.loads) {
+      const std::size_t by = load.carried_by;
+      // Axes stand in chain order: away from the bed on the side of the tool, towards it on that of the workpiece.
+      const bool carried = by < machine_.axes.size() && machine_.axes[by].side == side &&
+                           (side == ChainSide::tool ? by >= state.axis : by <= state.axis);
+      if (!carried) {
+        report_state("load", fmt::format("is not carried by {} or by an axis that {} carries",
+                                         machine_.axes[state.axis].name, machine_.axes[state.axis].name));
+      }
+      if (!(load.mass_kg > 0) || !std::isfinite(load.mass_kg)) report_state("load", "has no mass above 0 kg");
+      if (!load.point.allFinite()) report_state("load", "its point is not finite");
+    }
+  }
+
+  void report_state(const std::string& field, const std::string& message) {
+    report("", "state." + state_ + "." + field, message);
+  }
+
   const Machine& machine_;
+  std::string state_;  ///< name of the one that is looked at
   std::vector<MachineProblem> problems_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "abbe/errors/calibrated_machine.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/machine/inverse_plan.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/runtime/abbe_runtime.h"
@@ -179,6 +180,8 @@ std::string problem_of(const Machine& machine, const ErrorSet& errors, const Fre
   const std::vector<MachineProblem> problems = find_problems(machine);
   if (!problems.empty()) return problems.front().text();
   if (machine.axes.size() > ABBE_RUNTIME_AXES) return "more than 16 axes";
+  const std::string stated = first_error_with_state(machine, errors);
+  if (!stated.empty()) return stated + " depends on a state, which a frozen compensation does not know";
   if (errors.composition.first_order) return "the errors are composed to first order only, to reproduce a paper";
   const auto parameters = static_cast<Eigen::Index>(errors.parameter_count());
   if (options.covariance.rows() != 0 &&

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/random_errors.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/machine/errors_file.h"
@@ -42,6 +43,17 @@ void refuse_unreadable(const Machine& machine, const Instrument& device, const I
   }
 }
 
+/// @throws InputError where poses of a set-up do not give a state that the true errors use
+void require_planned_states(const Machine& machine, const ErrorSet& errors, const PoseList& poses,
+                            const std::string& setup) {
+  const std::size_t missing = missing_state(machine, errors, poses);
+  if (missing == kNoState) return;
+  const MachineState& state = machine.states[missing];
+  throw InputError({.field = setup},
+                   fmt::format("the true errors depend on {}, which is not given at all poses", state.name),
+                   fmt::format("poses from a file with a column {}", state_column(state)));
+}
+
 void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet& truth, const JobOptions& job,
                     CampaignSetup& result) {
   const Setup& setup = study.setups[setup_index];
@@ -53,6 +65,7 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
     PlannedReadings planned = planned_readings(study.machine, setup, setup.plans[p], seed);
     InstrumentReadings& plan = planned.readings;
     if (approach_matters(study, truth)) plan.poses.approach = approach_in_order(plan.poses);
+    require_planned_states(study.machine, truth, plan.poses, setup.name);
     InstrumentSimulationOptions options;
     options.seed = seed;
     options.noise_factor = study.simulation->noise ? 1 : 0;
@@ -193,7 +206,9 @@ bool Campaign::is_explained() const {
 ErrorSet true_errors(const Study& study) {
   const Simulation& simulation = *study.simulation;
   if (simulation.errors) return *simulation.errors;
-  if (simulation.errors_file) return read_errors(*simulation.errors_file, study.machine).errors;
+  if (simulation.errors_file) {
+    return read_errors(*simulation.errors_file, study.machine, StatesOfErrors::allowed).errors;
+  }
   const ErrorGenerator& generator = *simulation.generator;
   RandomErrorOptions options;
   options.seed = generator.seed;
@@ -217,7 +232,21 @@ ErrorSet true_errors(const Study& study) {
 }
 
 bool approach_matters(const Study& study, const ErrorSet& truth) {
-  return !truth.reversals.empty() || (study.identification && !study.identification->reversals.empty());
+  const auto is_approach = [&](std::size_t state) {
+    return state != kNoState && study.machine.states[state].kind == StateKind::approach;
+  };
+  if (!truth.reversals.empty()) return true;
+  const std::vector<std::uint8_t> used = used_states(study.machine, truth);
+  for (std::size_t j = 0; j < used.size(); ++j) {
+    if (used[j] != 0 && is_approach(j)) return true;
+  }
+  if (!study.identification) return false;
+  const IdentificationPlan& plan = *study.identification;
+  return !plan.reversals.empty() || std::any_of(plan.motions.begin(), plan.motions.end(), [&](const auto& one) {
+    return is_approach(one.state);
+  }) || std::any_of(plan.locations.begin(), plan.locations.end(), [&](const auto& one) {
+    return is_approach(one.state);
+  });
 }
 
 Campaign gather_readings(const Study& study, const JobOptions& options) {

@@ -260,6 +260,7 @@ bool ComparedCampaigns::is_judged() const {
 
 ComparedCampaigns compare_campaigns(const CompareRequest& request, const JobOptions& options) {
   check_request(request);
+  for (const IdentifiedCampaign& one : request.campaigns) refuse_states(one.machine, one.errors.errors, "a comparison");
   ComparedCampaigns result;
   result.machine = common_machine(request.campaigns);
   result.level = request.level;

@@ -12,6 +12,7 @@
 namespace abbe {
 
 CorrectedCommands correct_commands(const CommandsRequest& request) {
+  refuse_states(request.machine, request.errors.errors, "a correction of commands");
   check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   check_largest_turn(request.largest_turn);

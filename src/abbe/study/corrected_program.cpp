@@ -12,6 +12,7 @@
 #include "abbe/compensate/program/tool_centre_moves.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/formats/machine/correction_limits.h"
+#include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 
@@ -65,6 +66,7 @@ void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& c
 CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,
                                  const std::function<void(std::string_view text)>& write,
                                  const std::function<void(std::size_t end)>& done, const std::stop_token& stop) {
+  refuse_states(request.machine, request.errors, "a correction of programs");
   check_program_request(request);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   const Machine& machine = request.machine;

@@ -39,7 +39,7 @@ EndUncertainty end_uncertainty(const StudyResult& result, const AxisCoverage& co
     Eigen::Index first = 0;
     for (const ErrorMotion& motion : errors.motions) {
       const Eigen::Index size = static_cast<Eigen::Index>(motion.coefficients.size());
-      if (motion.axis == coverage.axis) {
+      if (motion.axis == coverage.axis && motion.state == kNoState) {
         Eigen::VectorXd functions(size);
         motion.basis.values(position, motion.coefficients, {functions.data(), motion.coefficients.size()});
         functional[static_cast<std::size_t>(motion.component)].segment(first, size) = functions;

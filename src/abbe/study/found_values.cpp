@@ -110,9 +110,11 @@ FoundValues found_values(const Study& study, const StudyResult& result) {
   for (const ErrorMotion& motion : errors.motions) index += motion.coefficients.size();
   for (const LocationError& location : errors.locations) {
     FoundNumber number =
-        estimates.number(location_error_name(machine, location.axis, location.component),
+        estimates.number(location_error_name(machine, location.axis, location.component, location.state),
                          {ParameterId::kMachine, index++}, is_rotation(location.component), location.value);
     number.words = error_words(machine, location.axis, location.component, true);
+    if (location.state != kNoState)
+      number.words += ", per " + factor_unit(machine, location.state) + " of " + machine.states[location.state].name;
     found.locations.push_back(std::move(number));
   }
   for (const Reversal& reversal : errors.reversals) {

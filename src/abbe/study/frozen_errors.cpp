@@ -59,6 +59,7 @@ std::string nothing_reached(const FrozenCompensation& frozen) {
 }  // namespace
 
 FrozenErrors freeze_errors(const FreezeRequest& request) {
+  refuse_states(request.machine, request.errors.errors, "a frozen compensation");
   check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   FreezeOptions options = freeze_options(request);

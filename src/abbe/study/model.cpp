@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/study/study_file.h"
@@ -76,6 +77,16 @@ void mark_held_out(const Study& study, Problem& problem) {
   }
 }
 
+/// @throws InputError where the readings of a set-up do not give a state that the errors use
+void require_read_states(const Machine& machine, const ErrorSet& errors, const CampaignSetup& setup) {
+  const std::size_t missing = missing_state(machine, errors, setup.poses());
+  if (missing == kNoState) return;
+  const MachineState& state = machine.states[missing];
+  throw InputError({.field = setup.name},
+                   fmt::format("errors to be identified depend on {}, which is not given at all readings", state.name),
+                   fmt::format("a column {} in the readings", state_column(state)));
+}
+
 /// @param all_found  every prior of the study has a parameter; lower orders than the study's may not have them all
 void add_priors(const Study& study, const Campaign& campaign, bool all_found, Problem& problem) {
   const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
@@ -112,11 +123,11 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
   const IdentificationPlan& plan = *study.identification;
   ErrorSet errors;
   std::optional<ErrorSet> initial;
-  if (plan.initial_errors) initial = read_errors(*plan.initial_errors, study.machine).errors;
+  if (plan.initial_errors) initial = read_errors(*plan.initial_errors, study.machine, StatesOfErrors::allowed).errors;
   for (const IdentifiedMotion& identified : plan.motions) {
     const Axis& axis = study.machine.axes[identified.axis];
     const std::vector<double> positions = measured_positions(campaign, identified.axis);
-    ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}};
+    ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}, identified.state};
     Basis& basis = motion.basis;
     if (positions.size() < 2) {
       model.impossible =
@@ -135,7 +146,8 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
     motion.coefficients.assign(basis.size(), 0.0);
     if (initial) {
       for (const ErrorMotion& start : initial->motions) {
-        if (start.axis == motion.axis && start.component == motion.component && start.basis == motion.basis) {
+        if (start.axis == motion.axis && start.component == motion.component && start.basis == motion.basis &&
+            start.state == motion.state) {
           motion.coefficients = start.coefficients;
         }
       }
@@ -143,10 +155,11 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
     errors.motions.push_back(motion);
   }
   for (const IdentifiedLocation& identified : plan.locations) {
-    LocationError location{identified.axis, identified.component, 0, 0};
+    LocationError location{identified.axis, identified.component, 0, 0, identified.state};
     if (initial) {
       for (const LocationError& start : initial->locations) {
-        if (start.axis == location.axis && start.component == location.component) location.value = start.value;
+        if (start.axis != location.axis || start.component != location.component) continue;
+        if (start.state == location.state) location.value = start.value;
       }
     }
     errors.locations.push_back(location);
@@ -173,6 +186,7 @@ StudyModel model_of(const Study& study, const Campaign& campaign, bool all_prior
   if (!model.impossible.empty()) return model;
   std::vector<std::shared_ptr<Observations>> observations;
   for (const CampaignSetup& setup : campaign.setups) {
+    require_read_states(study.machine, errors, setup);
     observations.push_back(setup.observations(study.machine, errors));
   }
   model.problem = estimate_everything(study.machine, errors, observations);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/identify/parameter_words.h"
 #include "abbe/identify/trust/shown_by.h"
 #include "abbe/study/study_result.h"
@@ -21,7 +22,9 @@ constexpr double kNothing_mm = 1e-6;
 PoseList poses_of(const Study& study, const ErrorSet& model) {
   std::vector<AxisRange> ranges;
   for (std::size_t i = 0; i < study.machine.axes.size(); ++i) ranges.push_back(known_range(study.machine, model, i, 2));
-  return random_plan(study.machine, ranges, kPoses, study.seed * 7919);
+  PoseList poses = random_plan(study.machine, ranges, kPoses, study.seed * 7919);
+  stand_at_references(study.machine, poses);
+  return poses;
 }
 
 /// Root mean square over the poses of what errors make, the workpiece datum fitted.

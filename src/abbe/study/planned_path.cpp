@@ -15,6 +15,7 @@ namespace {
 
 CalibratedMachine calibrated_for_path(const PathRequest& request) {
   if (!request.errors) return {request.machine, std::vector<double>(request.machine.axes.size(), 0.0), {}};
+  refuse_states(request.machine, request.errors->errors, "a path");
   CalibratedMachine calibrated = calibrated_machine(request.machine, request.errors->errors);
   if (!calibrated.variable.empty()) {
     throw InputError({.file = request.errors_file, .field = calibrated.variable},

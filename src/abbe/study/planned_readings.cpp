@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "abbe/formats/readings/planned_poses.h"
 #include "abbe/formats/text/input_error.h"
@@ -34,6 +35,8 @@ PoseList poses_once(const Machine& machine, const MeasurementPlan& plan, std::ui
 struct PlannedTargets {
   PoseList poses;
   std::vector<std::size_t> target, station;  ///< [poses]
+  std::vector<std::size_t> row;              ///< [poses] of the file
+  PoseList file;                             ///< poses of the file, with their states
 
   /// Goes through the same poses again, forwards or backwards.
   void repeat(const PlannedTargets& once, bool backwards) {
@@ -46,24 +49,27 @@ struct PlannedTargets {
     };
     join(target, once.target);
     join(station, once.station);
+    join(row, once.row);
   }
 };
 
 /// The rows of a file in their order, each with its target, or with all of the plan where the file names none; repeated
 /// as the plan says.
 PlannedTargets planned_targets(const Machine& machine, const Setup& setup, const MeasurementPlan& plan) {
-  const PlannedPoses planned = read_planned_poses(plan.file, machine, setup);
+  PlannedPoses planned = read_planned_poses(plan.file, machine, setup);
   PlannedTargets once;
   for (std::size_t k = 0; k < planned.poses.count(); ++k) {
     for (const std::size_t target : planned.target.empty() ? plan.targets : std::vector{planned.target[k]}) {
       once.poses.append(planned.poses.pose(k));
       once.target.push_back(target);
       once.station.push_back(planned.station.empty() ? 0 : planned.station[k]);
+      once.row.push_back(k);
     }
   }
   PlannedTargets all;
   all.poses = repeated(once.poses, plan.repeats, plan.there_and_back);
   for (std::size_t r = 0; r < plan.repeats; ++r) all.repeat(once, plan.there_and_back && r % 2 == 1);
+  all.file = std::move(planned.poses);
   return all;
 }
 
@@ -115,6 +121,11 @@ PlannedReadings planned_readings(const Machine& machine, const Setup& setup, con
       for (std::size_t n = 0; n < rows.poses.count(); ++n) {
         target = rows.target[n];
         append(rows.station[n], rows.poses.pose(n));
+        readings.poses.state.resize(rows.file.state.size());
+        for (std::size_t j = 0; j < rows.file.state.size(); ++j) {
+          if (rows.file.state[j].empty()) continue;
+          readings.poses.state[j].resize(readings.count(), rows.file.state[j][rows.row[n]]);
+        }
       }
       return planned;
     }

@@ -24,15 +24,26 @@ namespace {
 
 using Eigen::Index;
 
+/// @throws InputError for errors with states: a plan of readings does not say at which states they will be taken
 ErrorSet planned_errors(const Study& study) {
   ErrorSet errors;
+  const auto refuse = [&](std::size_t state) {
+    if (state == kNoState) return;
+    throw InputError({.field = "identify.motion.state"},
+                     fmt::format("planning of readings does not know at which values of {} they will be taken",
+                                 study.machine.states[state].name),
+                     "a study without states");
+  };
   for (const IdentifiedMotion& identified : study.identification->motions) {
+    refuse(identified.state);
     ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}};
     motion.coefficients.assign(motion.basis.size(), 0.0);
     errors.motions.push_back(motion);
   }
-  for (const IdentifiedLocation& location : study.identification->locations)
+  for (const IdentifiedLocation& location : study.identification->locations) {
+    refuse(location.state);
     errors.locations.push_back({location.axis, location.component, 0, 0});
+  }
   for (const std::size_t axis : study.identification->reversals) errors.reversals.push_back({axis, 0, 0});
   return errors;
 }

@@ -99,13 +99,14 @@ nlohmann::ordered_json report_error_motions(const Machine& machine, const Identi
         true_value.push_back(for_drawing(micro_per_unit(angle) * basis.evaluate(q, truth->motions[m].coefficients)));
       }
     }
-    const std::string name = error_motion_name(machine, motion.axis, motion.component);
+    const std::string name = error_motion_name(machine, motion.axis, motion.component, motion.state);
     const std::string suffix = std::string("_") + micro_unit(angle);
     nlohmann::ordered_json curve;
     curve["name"] = name;
     curve["axis"] = axis.name;
     curve["component"] = std::string(1, component_letter(motion.component));
     curve["basis"] = basis_words(basis);
+    if (motion.state != kNoState) curve["state"] = machine.states[motion.state].name;
     curve[rotary ? "position_deg" : "position_mm"] = position;
     curve["value" + suffix] = value;
     curve["expanded_uncertainty" + suffix] = band;
@@ -136,9 +137,11 @@ nlohmann::ordered_json report_location_errors(const Machine& machine, const Iden
   };
   for (std::size_t l = 0; l < identification.errors.locations.size(); ++l) {
     const LocationError& location = identification.errors.locations[l];
-    add(location_error_name(machine, location.axis, location.component), location.axis, is_rotation(location.component),
-        location.value, location.standard_uncertainty, truth != nullptr ? &truth->locations[l].value : nullptr);
+    add(location_error_name(machine, location.axis, location.component, location.state), location.axis,
+        is_rotation(location.component), location.value, location.standard_uncertainty,
+        truth != nullptr ? &truth->locations[l].value : nullptr);
     list.back()["component"] = std::string(1, component_letter(location.component));
+    if (location.state != kNoState) list.back()["state"] = machine.states[location.state].name;
   }
   for (std::size_t r = 0; r < identification.errors.reversals.size(); ++r) {
     const Reversal& reversal = identification.errors.reversals[r];

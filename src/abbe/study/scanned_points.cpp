@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
@@ -32,6 +33,7 @@ LeftOutPoses ScannedPoints::left_out() const {
 }
 
 ScannedPoints write_scanned_points(const ScannedPointsRequest& request, const JobOptions& options) {
+  refuse_states(request.machine, request.errors, "a scan");
   ScanOptions scan = request.scan;
   if (request.indication_range) {
     const auto [lowest, highest] = *request.indication_range;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/study/coverage.h"
@@ -95,6 +96,12 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
                                             result.monte_carlo->not_settled, result.monte_carlo->samples));
     }
   }
+  const std::string references = reference_words(study.machine, result.identification.errors);
+  if (!references.empty()) {
+    result.warnings.push_back(
+        "some errors depend on states; figures and maps are those at the references of the states: " + references +
+        " (map poses of a file: at the states that it gives)");
+  }
   result.not_identified = find_not_identified(study, result);
   result.volumetric = study_volumetric_figures(study, result);
   if (progress) progress(1, 1);
@@ -105,9 +112,11 @@ VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult
   const ErrorSet* const truth = result.campaign.truth ? &*result.campaign.truth : nullptr;
   std::vector<const ErrorSet*> known = {&identified};
   if (truth != nullptr) known.push_back(truth);
+  StatedPoses poses = stated_grid(study.machine, known);
+  stand_at_references(study.machine, poses.poses);
   return volumetric_figures(study.machine, &identified,
-                            machine_covariance(result.identification, identified.parameter_count()), truth,
-                            stated_grid(study.machine, known), study.threads);
+                            machine_covariance(result.identification, identified.parameter_count()), truth, poses,
+                            study.threads);
 }
 
 StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress) {
@@ -141,6 +150,7 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
       map.description += fmt::format("{} {}", i == 0 ? "" : " x", map.grid[i]);
     map.description += map.moved.empty() ? " poses" : " poses over the range in which the errors are known";
   }
+  stand_at_references(machine, map.poses);
   const PoseSource poses = pose_source(map.poses);
   ErrorMapOptions options;
   options.remove_rigid_motion = true;

@@ -25,7 +25,7 @@ Eigen::VectorXd nearest_coefficients(const ErrorSet& truth, const ErrorMotion& m
     basis.values(positions[i], motion.coefficients, row);
     for (std::size_t j = 0; j < row.size(); ++j) functions(static_cast<Index>(i), static_cast<Index>(j)) = row[j];
     for (const ErrorMotion& one : truth.motions) {
-      if (one.axis != motion.axis || one.component != motion.component) continue;
+      if (one.axis != motion.axis || one.component != motion.component || one.state != motion.state) continue;
       values[static_cast<Index>(i)] += one.basis.evaluate(positions[i], one.coefficients);
     }
   }
@@ -43,7 +43,8 @@ std::vector<double> true_parameters(const ErrorSet& truth, const ErrorSet& model
   for (LocationError& location : result.locations) {
     location.value = 0;
     for (const LocationError& one : truth.locations) {
-      if (one.axis == location.axis && one.component == location.component) location.value += one.value;
+      if (one.axis != location.axis || one.component != location.component) continue;
+      if (one.state == location.state) location.value += one.value;
     }
   }
   for (Reversal& reversal : result.reversals) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/instruments/instrument_simulation.h"
@@ -115,6 +116,7 @@ InstrumentReadings unseen_points(const Study& study, const StudyResult& result, 
   const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed) + s);
   InstrumentReadings plan;
   for (std::size_t k = 0; k < list.count(); ++k) plan.append(list.pose(k), k % truth->items().size());
+  stand_at_references(study.machine, plan.poses);
   InstrumentSimulationOptions options;
   options.noise_factor = 0;
   options.line_of_sight = false;
@@ -185,6 +187,7 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
   const bool both_directions = !identified.reversals.empty() || !actual.reversals.empty();
   PoseList list =
       random_unseen_poses(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed), both_directions);
+  stand_at_references(study.machine, list);
   ErrorMapOptions options;
   options.orientation = false;
   options.remove_rigid_motion = true;

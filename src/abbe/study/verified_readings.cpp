@@ -115,6 +115,7 @@ bool VerifiedReadings::says_no() const {
 }
 
 VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptions& options) {
+  refuse_states(request.study.machine, request.identified.errors, "a verification by readings");
   require_condition("--least-reduction", request.least_reduction);
   require_condition("--largest-ratio", request.largest_ratio);
   const auto progress = stoppable_progress(options);

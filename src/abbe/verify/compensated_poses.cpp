@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 
 #include "abbe/compensate/compensated_inverse.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/angle.h"
 #include "abbe/verify/covariance_root.h"
@@ -46,7 +48,13 @@ PoseList corrected_commands(const Machine& machine, const ErrorSet& identified, 
   CorrectedArrays arrays;
   arrays.axis = to;
   arrays.status = status.data();
-  inverse.correct({from, count}, arrays);
+  const GivenStates given(machine, mean);
+  std::vector<std::size_t> all(given.any() ? count : 0);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<double> states;
+  std::vector<const double*> state;
+  given.gather(commands, all, states, state);
+  inverse.correct({from, count, state}, arrays);
   reach.assign(count, Reach::not_reached);
   for (std::size_t k = 0; k < count; ++k) {
     if (reaches_point(status[k])) {
@@ -64,6 +72,7 @@ PoseList corrected_commands(const Machine& machine, const ErrorSet& identified, 
     }
   }
   corrected.approach = commands.approach;
+  corrected.state = commands.state;
   return corrected;
 }
 

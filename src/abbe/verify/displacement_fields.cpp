@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "abbe/errors/actual_pose.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/verify/parts/deviation_block.h"
@@ -74,10 +75,12 @@ DisplacementFields displacement_fields(const Machine& machine, const ErrorSet& e
   DisplacementFields result = displacement_fields(machine, errors, parameters, pose_source(poses), covered);
   const ReversalShift reversal(errors);
   if (!reversal.acts_on(poses)) return result;
+  const GivenStates given(machine, errors);
   Deviation deviation;
   Eigen::MatrixXd by_positions;
   for (std::size_t k = 0; k < result.pose.size(); ++k) {
-    tool_deviation(machine, errors, poses.pose(result.pose[k]), deviation, nullptr, &by_positions);
+    tool_deviation(machine, errors, poses.pose(result.pose[k]), deviation, nullptr, &by_positions,
+                   given.at(poses, result.pose[k]));
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const std::size_t axis = reversal.axis_of(parameters[p]);
       if (axis == ReversalShift::npos) continue;

@@ -20,13 +20,14 @@ constexpr double kNothing = 1e-10;
 constexpr double kNearlyATurn = 0.9 * kTurn;
 
 bool holds_motion(const ErrorSet& errors, std::size_t axis, Component component) {
-  return std::any_of(errors.motions.begin(), errors.motions.end(),
-                     [&](const ErrorMotion& motion) { return motion.axis == axis && motion.component == component; });
+  return std::any_of(errors.motions.begin(), errors.motions.end(), [&](const ErrorMotion& motion) {
+    return motion.axis == axis && motion.component == component && motion.state == kNoState;
+  });
 }
 
 bool holds_location(const ErrorSet& errors, std::size_t axis, Component component) {
   return std::any_of(errors.locations.begin(), errors.locations.end(), [&](const LocationError& location) {
-    return location.axis == axis && location.component == component;
+    return location.axis == axis && location.component == component && location.state == kNoState;
   });
 }
 

@@ -38,11 +38,20 @@ bool is_truth(const ErrorsFile& file);
 /// independent; 0 x 0 if it states none.
 Eigen::MatrixXd covariance_of(const ErrorsFile& file);
 
+/// Whether a job can take errors that depend on states of the machine. Most cannot, and must not overlook them.
+enum class StatesOfErrors { refused, allowed };
+
 /// Reads the errors of a machine and the CSV files that the file names (beside it). Bases without from/to run over the
-/// travel of their axis. @throws InputError
-ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine);
+/// travel of their axis. @throws InputError, also for errors with states where they are refused
+ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine,
+                       StatesOfErrors states = StatesOfErrors::refused);
 /// The same from text. @param path  name for messages; its folder is where other files are looked for
-ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& path, const Machine& machine);
+ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& path, const Machine& machine,
+                        StatesOfErrors states = StatesOfErrors::refused);
+
+/// Refuses errors that depend on states, in a job that cannot take them into account.
+/// @param job  "a correction table". @throws InputError naming the first such error
+void refuse_states(const Machine& machine, const ErrorSet& errors, const std::string& job);
 
 /// Text of an errors file; reading it back gives the same bits.
 /// @param covariance_file  name of the CSV with the covariance, beside the file; empty: none

@@ -100,12 +100,14 @@ struct IdentifiedMotion {
   Component component = Component::X;
   /// With the largest order to be tried; a table has its number of intervals as order and no nodes yet.
   Basis basis;
-  int smallest_order = 0;  ///< equal to basis.order unless the order is to be selected
+  int smallest_order = 0;        ///< equal to basis.order unless the order is to be selected
+  std::size_t state = kNoState;  ///< index into Machine::states
 };
 
 struct IdentifiedLocation {
   std::size_t axis = 0;
   Component component = Component::A;
+  std::size_t state = kNoState;  ///< index into Machine::states
 };
 
 /// Prior knowledge of parameters: value with standard uncertainty.

@@ -34,6 +34,10 @@ struct CorrectionBlock {
   /// Axes that were kept at an end of their travel and work no more: their derivative is zero. Set only if any is.
   std::array<std::array<std::uint8_t, kCorrectionBlock>, kMaxAxes> at_end;
   bool any_at_end = false;
+  /// As PositionArrays::state, from the first pose of the block on.
+  std::array<const double*, kMaxStates> state;
+  std::size_t states = 0;
+  std::span<const double* const> given_states() const { return {state.data(), states}; }
   std::array<CorrectionStatus, kCorrectionBlock> status;
   Lanes position_residual, orientation_residual;
 };

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "abbe/compensate/correction_uncertainty.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/covariance_file.h"
@@ -35,6 +36,24 @@ void read_name(TomlTable& table, const Machine& machine, bool location, std::siz
     table.fail("name", fmt::format("\"{}\" is {}", name, is_location ? "a location error" : "an error motion"),
                is_location ? "it under [[location]]" : "it under [[motion]]");
   }
+}
+
+/// Key `state` of an error. @throws InputError
+std::size_t read_state_of_error(TomlTable& table, const Machine& machine, StatesOfErrors states) {
+  if (!table.has("state")) return kNoState;
+  const std::string name = table.text("state");
+  const std::size_t state = find_state(machine, name);
+  if (state == kNoState) {
+    std::string known;
+    for (const MachineState& one : machine.states) known += (known.empty() ? "" : ", ") + one.name;
+    table.fail("state", fmt::format("\"{}\" is not a state of this machine", name),
+               known.empty() ? "a table [state." + name + "] in the machine file" : known);
+  }
+  if (states == StatesOfErrors::refused) {
+    table.fail("state", fmt::format("this error depends on {}, which is not taken into account here", name),
+               "errors without states");
+  }
+  return state;
 }
 
 /// What no error of an axis is, and from where on a computation need not have a result.
@@ -138,12 +157,20 @@ const Unit& error_unit(Component component) {
   return unit_named(error_quantity(component), is_rotation(component) ? "urad" : "um");
 }
 
+/// What is written of a state: nothing without one.
+std::string state_line(const Machine& machine, std::size_t state) {
+  if (state == kNoState) return {};
+  const std::string unit = factor_unit(machine, state);
+  return fmt::format("state = {}{}\n", toml_string(machine.states[state].name),
+                     unit == "1" ? "" : "  # coefficients and values are per " + unit);
+}
+
 std::string motion_text(const Machine& machine, const ErrorMotion& motion) {
   const Axis& axis = machine.axes[motion.axis];
   const Unit& unit = error_unit(motion.component);
   std::string text =
-      fmt::format("\n[[motion]]\nname = \"{}\"\n{}", error_motion_name(machine, motion.axis, motion.component),
-                  basis_text(motion.basis, axis));
+      fmt::format("\n[[motion]]\nname = \"{}\"\n{}{}", error_motion_name(machine, motion.axis, motion.component),
+                  state_line(machine, motion.state), basis_text(motion.basis, axis));
   if (is_table(motion.basis.kind)) {
     text += axis.kind == AxisKind::rotary
                 ? toml_angles("at", motion.basis.nodes)
@@ -158,7 +185,8 @@ std::string motion_text(const Machine& machine, const ErrorMotion& motion) {
 
 }  // namespace
 
-ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& path, const Machine& machine) {
+ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& path, const Machine& machine,
+                        StatesOfErrors states) {
   TomlTable root = TomlTable::parse(text, path.string());
   const std::filesystem::path folder = path.parent_path();
   ErrorsFile contents;
@@ -171,6 +199,7 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
   for (TomlTable& table : root.tables("motion")) {
     ErrorMotion motion;
     read_name(table, machine, false, motion.axis, motion.component);
+    motion.state = read_state_of_error(table, machine, states);
     read_values(table, folder, machine, motion);
     table.finish();
     errors.motions.push_back(std::move(motion));
@@ -178,12 +207,15 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
   for (TomlTable& table : root.tables("location")) {
     LocationError location;
     read_name(table, machine, true, location.axis, location.component);
+    location.state = read_state_of_error(table, machine, states);
     const Quantity quantity = error_quantity(location.component);
     if (!location_error_is_valid(machine.axes[location.axis], location.component)) {
       table.fail("name", "this component has no effect on the axis", "a location error that displaces the axis line");
     }
     for (const LocationError& other : errors.locations) {
-      if (other.axis == location.axis && other.component == location.component) table.fail("name", "is given twice");
+      if (other.axis == location.axis && other.component == location.component && other.state == location.state) {
+        table.fail("name", "is given twice");
+      }
     }
     location.value = table.number("value", quantity);
     refuse_implausible(table, "value", quantity, location.value);
@@ -235,8 +267,15 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
   return contents;
 }
 
-ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine) {
-  return parse_errors(read_file_of_kind(path, ".errors.toml"), path, machine);
+ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine, StatesOfErrors states) {
+  return parse_errors(read_file_of_kind(path, ".errors.toml"), path, machine, states);
+}
+
+void refuse_states(const Machine& machine, const ErrorSet& errors, const std::string& job) {
+  const std::string first = first_error_with_state(machine, errors);
+  if (first.empty()) return;
+  throw InputError({.field = first}, "depends on a state, which " + job + " does not take into account",
+                   "errors without states");
 }
 
 std::string errors_text(const Machine& machine, const ErrorsFile& contents, const std::string& covariance_file) {
@@ -259,9 +298,9 @@ std::string errors_text(const Machine& machine, const ErrorsFile& contents, cons
   for (const ErrorMotion& motion : errors.motions) text += motion_text(machine, motion);
   for (const LocationError& location : errors.locations) {
     const Unit& unit = error_unit(location.component);
-    text += fmt::format("\n[[location]]\nname = \"{}\"\nvalue_{} = {}\n",
-                        location_error_name(machine, location.axis, location.component), unit.suffix,
-                        quantity_text(location.value, unit));
+    text += fmt::format("\n[[location]]\nname = \"{}\"\n{}value_{} = {}\n",
+                        location_error_name(machine, location.axis, location.component),
+                        state_line(machine, location.state), unit.suffix, quantity_text(location.value, unit));
     if (location.standard_uncertainty > 0) {
       text += fmt::format("standard_uncertainty_{} = {}\n", unit.suffix,
                           quantity_text(location.standard_uncertainty, unit));

@@ -8,6 +8,7 @@
 
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/error_fields.h"
+#include "abbe/formats/machine/machine_states.h"
 #include "abbe/formats/text/toml_table.h"
 #include "abbe/formats/text/toml_vector.h"
 #include "abbe/geometry/angle_units.h"
@@ -76,10 +77,6 @@ void read_tool(TomlTable table, Machine& machine) {
   table.finish();
 }
 
-std::string vector_text(const Eigen::Vector3d& v) {
-  return fmt::format("[{}, {}, {}]", shortest_text(v.x()), shortest_text(v.y()), shortest_text(v.z()));
-}
-
 }  // namespace
 
 Machine parse_machine(const std::string& text, const std::string& file) {
@@ -104,9 +101,11 @@ Machine parse_machine(const std::string& text, const std::string& file) {
   axes.finish();
   if (auto workpiece = root.optional_table("workpiece")) read_workpiece(*workpiece, machine);
   if (auto tool = root.optional_table("tool")) read_tool(*tool, machine);
+  read_states(root, machine);
   root.finish();
 
   for (const MachineProblem& problem : find_problems(machine)) {
+    if (problem.field.starts_with("state.")) fail_state(root, problem);
     if (problem.axis.empty()) root.fail("", problem.text());
     root.table("axis").fail(problem.axis, problem.message);
   }
@@ -121,6 +120,9 @@ std::string machine_text(const Machine& machine) {
   std::string text = fmt::format("name = {}\n", toml_string(machine.name));
   if (!machine.description.empty()) text += fmt::format("description = {}\n", toml_string(machine.description));
   text += fmt::format("chain = {}\n", toml_string(machine.chain()));
+  if (machine.gravity != Machine{}.gravity) {
+    text += fmt::format("gravity_m_per_s2 = {}\n", vector_text(machine.gravity));
+  }
   for (const Axis& axis : machine.axes) {
     text += fmt::format("\n[axis.{}]\n", axis.name);
     text += fmt::format("kind = \"{}\"\n", axis.kind == AxisKind::linear ? "linear" : "rotary");
@@ -141,6 +143,7 @@ std::string machine_text(const Machine& machine) {
   text +=
       fmt::format("\n[tool]\nreference_mm = {}\noffset_mm = {}\ndirection = {}\n", vector_text(machine.tool_reference),
                   vector_text(machine.tool_offset), vector_text(machine.tool_direction));
+  text += states_text(machine);
   return text;
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "abbe/formats/machine/error_fields.h"
 #include "abbe/formats/text/input_error.h"
 
@@ -87,6 +90,49 @@ std::vector<std::vector<std::int8_t>> take_approach(std::string_view text, const
   }
   if (!known) approach.clear();
   return approach;
+}
+
+std::size_t add_state_columns(const Machine& machine, std::vector<CsvColumn>& columns) {
+  const std::size_t first = columns.size();
+  for (const MachineState& state : machine.states) {
+    if (!is_input(state.kind)) continue;
+    // The header is taken as it is: a state has one unit, which the machine file names.
+    columns.push_back({state_column(state), Quantity::dimensionless, false, false, CsvColumn::Range::any});
+  }
+  return first;
+}
+
+std::vector<std::vector<double>> take_states(std::string_view text, const std::string& file, const Machine& machine,
+                                             CsvTable& table, std::size_t first, const std::vector<double>& time_s) {
+  std::vector<std::vector<double>> states(machine.states.size());
+  bool known = false;
+  for (std::size_t j = 0; j < machine.states.size(); ++j) {
+    if (!is_input(machine.states[j].kind)) continue;
+    CsvValues& column = table.columns[first++];
+    if (!column.present) continue;
+    known = true;
+    states[j] = std::move(column.numbers);
+  }
+  for (std::size_t j = 0; j < machine.states.size(); ++j) {
+    const MachineState& state = machine.states[j];
+    if (state.kind != StateKind::lag || !states[j].empty() || states[state.first].empty() || time_s.empty()) continue;
+    for (std::size_t row = 1; row < time_s.size(); ++row) {
+      if (time_s[row] >= time_s[row - 1]) continue;
+      throw InputError({file, csv_line(text, row), 0, "time"},
+                       fmt::format("is before the time of the reading before it, so that {} cannot be computed from {}",
+                                   state.name, machine.states[state.first].name),
+                       "times in order, or a column " + state_column(state));
+    }
+    states[j] = lagged(time_s, states[state.first], state.time_constant);
+  }
+  if (!known) states.clear();
+  return states;
+}
+
+bool has_state_column(const PoseList& poses, std::size_t state) {
+  if (state >= poses.state.size() || poses.state[state].size() != poses.count()) return false;
+  return std::all_of(poses.state[state].begin(), poses.state[state].end(),
+                     [](double value) { return std::isfinite(value); });
 }
 
 std::vector<double> approach_numbers(const std::vector<std::int8_t>& sides) { return {sides.begin(), sides.end()}; }

@@ -42,6 +42,19 @@ std::size_t add_approach_columns(const Machine& machine, std::vector<CsvColumn>&
 std::vector<std::vector<std::int8_t>> take_approach(std::string_view text, const std::string& file,
                                                     const Machine& machine, const CsvTable& table, std::size_t first);
 
+/// Optional columns of measured and lag states: "ambient_degC", "feed" where the unit is "1".
+/// @returns index of the first of them; in the order of Machine::states
+std::size_t add_state_columns(const Machine& machine, std::vector<CsvColumn>& columns);
+
+/// States of poses that were taken from the table, as PoseList::state. A lag without a column of its own is computed
+/// from the column of its channel where there are times; it starts in equilibrium.
+/// @param time_s  [rows] or empty. @throws InputError for times that go back, where a lag is computed from them
+std::vector<std::vector<double>> take_states(std::string_view text, const std::string& file, const Machine& machine,
+                                             CsvTable& table, std::size_t first, const std::vector<double>& time_s);
+
+/// Whether the values of a state are given at all poses, so that they can be written.
+bool has_state_column(const PoseList& poses, std::size_t state);
+
 /// The sides of one axis as numbers for a column.
 std::vector<double> approach_numbers(const std::vector<std::int8_t>& sides);
 /// "X_approach"

@@ -80,6 +80,7 @@ InstrumentReadings parse_instrument_readings(std::string_view text, const std::s
   const std::size_t point = wanted.size();
   wanted.push_back(point_column());
   const std::size_t approach = add_approach_columns(machine, wanted);
+  const std::size_t states = add_state_columns(machine, wanted);
 
   CsvTable table = read_csv(text, file, wanted, options.mapping, options.threads);
   InstrumentReadings readings;
@@ -90,6 +91,7 @@ InstrumentReadings parse_instrument_readings(std::string_view text, const std::s
   components.take(text, file, table, readings);
   readings.point_name = std::move(table.columns[point].labels);
   if (table.columns[time].present) readings.time_s = std::move(table.columns[time].numbers);
+  readings.poses.state = take_states(text, file, machine, table, states, readings.time_s);
   return readings;
 }
 
@@ -156,6 +158,11 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
   for (std::size_t i = 0; i < approach.size(); ++i) {
     columns.push_back(
         {csv_field(approach_header(machine.axes[i])), &approach[i], &unit_named(Quantity::dimensionless, "")});
+  }
+  for (std::size_t j = 0; j < machine.states.size(); ++j) {
+    if (has_state_column(readings.poses, j)) {
+      add(state_column(machine.states[j]), Quantity::dimensionless, "", readings.poses.state[j]);
+    }
   }
 
   const std::vector<std::string> targets = instrument.target_names();

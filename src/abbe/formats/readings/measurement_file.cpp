@@ -53,6 +53,7 @@ class MeasurementReader {
     const std::size_t point = layout_.columns.size();
     layout_.columns.push_back(point_column());
     const std::size_t approach = add_approach_columns(machine_, layout_.columns);
+    const std::size_t states = add_state_columns(machine_, layout_.columns);
 
     csv_ = read_csv(text_, file_, layout_.columns, options_.mapping, options_.threads);
     TrackerReadings& readings = table_.readings;
@@ -66,6 +67,7 @@ class MeasurementReader {
     if (!cartesian && readings.stated != StatedUncertainty::none) refuse_vertical_beams(csv_.columns[range + 2].header);
     readings.point_name = std::move(csv_.columns[point].labels);
     if (csv_.columns[time].present) readings.time_s = std::move(csv_.columns[time].numbers);
+    readings.poses.state = take_states(text_, file_, machine_, csv_, states, readings.time_s);
     read_names(station, readings.station, table_.stations);
     if (table_.stations.empty()) table_.stations.emplace_back();
     read_names(reflector, readings.reflector, table_.reflectors);
@@ -76,8 +78,11 @@ class MeasurementReader {
 
   PoseList poses_only() {
     layout_.columns = axis_columns(machine_);
+    const std::size_t states = add_state_columns(machine_, layout_.columns);
     csv_ = read_csv(text_, file_, layout_.columns, options_.mapping, options_.threads);
-    return poses();
+    PoseList list = poses();
+    list.state = take_states(text_, file_, machine_, csv_, states, {});
+    return list;
   }
 
  private:

@@ -125,6 +125,11 @@ std::string measurements_text(const Machine& machine, const MeasurementTable& ta
   for (std::size_t i = 0; i < approach.size(); ++i) {
     columns.add(approach_header(machine.axes[i]), Quantity::dimensionless, "", approach[i]);
   }
+  for (std::size_t j = 0; j < machine.states.size(); ++j) {
+    if (has_state_column(readings.poses, j)) {
+      columns.add(state_column(machine.states[j]), Quantity::dimensionless, "", readings.poses.state[j]);
+    }
+  }
   return columns.text(readings.count());
 }
 

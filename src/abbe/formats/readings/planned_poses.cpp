@@ -23,8 +23,10 @@ class PlannedPosesReader {
     const std::string one = setup_.device->target_word();
     for (const std::string& name : {std::string("setup"), std::string("station"), one, std::string("target")})
       columns.push_back({name, Quantity::dimensionless, true, false});
+    const std::size_t states = add_state_columns(machine_, columns);
     table_ = read_csv(text_, file_, columns);
-    const PoseList all = take_poses(text_, file_, machine_, table_, true);
+    PoseList all = take_poses(text_, file_, machine_, table_, true);
+    all.state = take_states(text_, file_, machine_, table_, states, {});
     const std::size_t named = table_.columns[target].present ? target : target + 1;
     if (table_.columns[target].present && table_.columns[target + 1].present) {
       throw InputError({file_, 0, 0, "target"}, "is given together with " + table_.columns[target].header,
@@ -37,6 +39,10 @@ class PlannedPosesReader {
     for (std::size_t row = 0; row < table_.rows; ++row) {
       if (table_.columns[setup].present && name(setup, row) != setup_.name) continue;
       result.poses.append(all.pose(row));
+      result.poses.state.resize(all.state.size());
+      for (std::size_t j = 0; j < all.state.size(); ++j) {
+        if (!all.state[j].empty()) result.poses.state[j].push_back(all.state[j][row]);
+      }
       if (!stations.empty()) {
         if (!table_.columns[station].present && stations.size() > 1) fail(row, "station", "is missing", stations);
         result.station.push_back(table_.columns[station].present ? find(station, row, stations) : 0);

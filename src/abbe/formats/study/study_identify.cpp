@@ -37,6 +37,18 @@ std::vector<std::pair<std::size_t, Component>> find_motions(const TomlTable& tab
   return found;
 }
 
+/// Key `state`: the error motions or location errors of the table are proportional to its factor.
+std::size_t read_identified_state(TomlTable& table, const Machine& machine) {
+  if (!table.has("state")) return kNoState;
+  const std::string name = table.text("state");
+  const std::size_t state = find_state(machine, name);
+  if (state != kNoState) return state;
+  std::string known;
+  for (const MachineState& one : machine.states) known += (known.empty() ? "" : ", ") + one.name;
+  table.fail("state", fmt::format("\"{}\" is not a state of this machine", name),
+             known.empty() ? "a table [state." + name + "] in the machine file" : known);
+}
+
 std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& machine) {
   Basis basis = read_basis_kind(table);
   if (basis.kind == BasisKind::table_monotone) {
@@ -55,6 +67,10 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
     basis.order = static_cast<int>(table.integer("order", smallest, kLargestOrder));
     smallest_tried = basis.order;
   }
+  const std::size_t state = read_identified_state(table, machine);
+  if (state != kNoState && smallest_tried < basis.order) {
+    table.fail("orders", "is given together with `state`", "order, as orders are selected for errors without states");
+  }
   const std::vector<std::string> patterns = table.texts("errors");
   if (patterns.empty()) table.fail("errors", "is empty", pattern_hint(machine));
   std::vector<IdentifiedMotion> motions;
@@ -66,7 +82,7 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
         table.fail("errors", "linear and rotary axes in one table: their positions have different units",
                    "one [[identify.motion]] for each kind of axis");
       }
-      IdentifiedMotion motion{axis, component, basis, smallest_tried};
+      IdentifiedMotion motion{axis, component, basis, smallest_tried, state};
       // A table to be identified has no nodes yet, but a range like a spline, over which they will stand evenly.
       motion.basis.kind = is_table(basis.kind) ? BasisKind::bspline : basis.kind;
       read_basis_range(table, machine.axes[axis], motion.basis);
@@ -78,8 +94,11 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
   return motions;
 }
 
-void read_locations(TomlTable& table, const Machine& machine, IdentificationPlan& plan) {
-  for (const std::string& pattern : table.texts_or_none("locations")) {
+/// @param key    of the patterns
+/// @param state  of the location errors
+void read_locations(TomlTable& table, const Machine& machine, const char* key, std::size_t state,
+                    IdentificationPlan& plan) {
+  for (const std::string& pattern : table.texts_or_none(key)) {
     bool found = false;
     for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
       for (const Component component : kComponents) {
@@ -87,20 +106,21 @@ void read_locations(TomlTable& table, const Machine& machine, IdentificationPlan
         const bool valid = location_error_is_valid(machine.axes[axis], component);
         if (!valid && is_pattern(pattern)) continue;
         if (!valid) {
-          table.fail("locations", fmt::format("\"{}\" has no effect on the axis", pattern),
+          table.fail(key, fmt::format("\"{}\" has no effect on the axis", pattern),
                      "a location error that displaces the axis line");
         }
         // The zero of an axis is rarely meant by "all location errors", and rarely separable from other constants.
         if (is_pattern(pattern) && is_zero_position_error(machine.axes[axis], component)) continue;
         found = true;
-        const bool known = std::any_of(
-            plan.locations.begin(), plan.locations.end(),
-            [&](const IdentifiedLocation& other) { return other.axis == axis && other.component == component; });
-        if (!known) plan.locations.push_back({axis, component});
+        const bool known =
+            std::any_of(plan.locations.begin(), plan.locations.end(), [&](const IdentifiedLocation& other) {
+              return other.axis == axis && other.component == component && other.state == state;
+            });
+        if (!known) plan.locations.push_back({axis, component, state});
       }
     }
     if (!found) {
-      table.fail("locations", fmt::format("\"{}\" is not a location error of this machine", pattern),
+      table.fail(key, fmt::format("\"{}\" is not a location error of this machine", pattern),
                  fmt::format("names like EC0X or patterns like \"E?0{}\"; axes {}", machine.axes.front().name,
                              axis_names(machine)));
     }
@@ -194,7 +214,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
     for (IdentifiedMotion& identified : read_motions(motion, machine)) {
       for (const IdentifiedMotion& other : plan.motions) {
         if (other.axis != identified.axis || other.component != identified.component) continue;
-        if (other.basis.kind != identified.basis.kind) continue;
+        if (other.basis.kind != identified.basis.kind || other.state != identified.state) continue;
         motion.fail("errors",
                     fmt::format("{} is given twice in the same basis",
                                 error_motion_name(machine, identified.axis, identified.component)),
@@ -204,7 +224,13 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
       plan.motions.push_back(std::move(identified));
     }
   }
-  read_locations(table, machine, plan);
+  read_locations(table, machine, "locations", kNoState, plan);
+  for (TomlTable& location : table.tables("location")) {
+    const std::size_t state = read_identified_state(location, machine);
+    if (state == kNoState) location.fail("state", "is missing", "a state; location errors without one in `locations`");
+    read_locations(location, machine, "errors", state, plan);
+    location.finish();
+  }
   read_reversals(table, machine, plan);
   plan.tool_offset = table.boolean_or("tool_offset", false);
   if (table.has("initial")) plan.initial_errors = folder / table.text("initial");

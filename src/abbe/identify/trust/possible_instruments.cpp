@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/identify/trust/trial_readings.h"
 #include "abbe/instruments/ball_bar.h"
@@ -115,7 +116,9 @@ class FurtherInstruments {
     InstrumentSimulationOptions options;
     options.noise_factor = 0;
     const ErrorSet errors = without_errors(problem_);
-    const InstrumentReadings all = simulate_instrument(machine_, errors, device, planned, options).readings;
+    InstrumentReadings at_references = planned;
+    stand_at_references(machine_, at_references.poses);
+    const InstrumentReadings all = simulate_instrument(machine_, errors, device, at_references, options).readings;
     std::vector<std::size_t> finite;
     for (std::size_t k = 0; k < all.count(); ++k) {
       const bool shown = std::all_of(all.measured.begin(), all.measured.end(),
@@ -296,6 +299,7 @@ class FurtherInstruments {
       if (covered(pose)) poses.append(pose);
     }
     if (poses.count() < kLeastReadings) return;
+    stand_at_references(machine_, poses);
     TrackerSimulationOptions options;
     options.noise_factor = 0;
     options.line_of_sight = false;

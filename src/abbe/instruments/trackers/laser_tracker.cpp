@@ -273,6 +273,9 @@ SimulatedInstrument LaserTracker::simulate(const Machine& machine, const ErrorSe
     };
     for (auto& values : poses.axis) keep_first(values);
     for (auto& sides : poses.approach) keep_first(sides);
+    for (auto& values : poses.state) {
+      if (!values.empty()) keep_first(values);
+    }
   } else {
     own.choice = SightChoice::cycle;
   }

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/geometry/best_fit_transform.h"
 #include "abbe/geometry/decompositions.h"
 
@@ -199,7 +200,11 @@ std::vector<RigidTransform> seen_bodies(const Machine& machine, const ErrorSet& 
     }
     for (std::size_t i = 0; i < 9; ++i) rotation.r[i] = &numbers[i * own.size()];
     const ChainPlan plan(machine, errors, items[item].from, items[item].to);
-    plan.transform({axis, own.size()}, {origin[0], origin[1], origin[2]}, {origin[0], origin[1], origin[2]}, rotation);
+    std::vector<double> states;
+    std::vector<const double*> state;
+    GivenStates(machine, errors).gather(readings.poses, own, states, state);
+    plan.transform({axis, own.size(), state}, {origin[0], origin[1], origin[2]}, {origin[0], origin[1], origin[2]},
+                   rotation);
     for (std::size_t k = 0; k < own.size(); ++k) {
       RigidTransform& body = result[own[k]];
       for (Index i = 0; i < 9; ++i) body.rotation(i / 3, i % 3) = rotation.r[i][k];

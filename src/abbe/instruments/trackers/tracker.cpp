@@ -67,6 +67,10 @@ void check_sizes(const Machine& machine, const TrackerReadings& readings) {
     throw std::invalid_argument("sides of approach not one per axis");
   }
   for (const std::vector<std::int8_t>& sides : readings.poses.approach) check("side of approach", sides.size(), false);
+  if (!readings.poses.state.empty() && readings.poses.state.size() != machine.states.size()) {
+    throw std::invalid_argument("values of states not one column per state");
+  }
+  for (const std::vector<double>& values : readings.poses.state) check("value of a state", values.size(), true);
   check("reflector", readings.reflector.size(), false);
   for (const std::vector<double>& values : readings.measured) check("measured", values.size(), false);
   check("time", readings.time_s.size(), true);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/trackers/tracker_residual.h"
@@ -34,6 +35,8 @@ struct TrackerScratch {
   static constexpr std::size_t kBlock = Observations::kBlockSize;
   std::vector<double> positions;  ///< [axes][kBlock]
   std::vector<const double*> axis;
+  std::vector<double> states;  ///< [states that are given][kBlock]
+  std::vector<const double*> state;
   std::vector<double> jacobian;     ///< compact columns of one pair of bodies
   std::vector<double> by_position;  ///< [axes][3][members]
   double start[3][kBlock], seen[3][kBlock], gathered[3][kBlock], trig[4][kBlock], weight[6][kBlock];
@@ -70,6 +73,7 @@ struct TrackerObservations::Implementation {
   std::vector<Eigen::Vector3d> starts;   ///< offsets with the tool offset error where it acts
   Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();
   ReversalShift reversal;
+  GivenStates given_states;
 
   std::uint8_t pair_at(std::size_t reading) const {
     return pair_of[readings.station[reading] * given.reflectors.size() + readings.reflector[reading]];
@@ -166,6 +170,7 @@ void TrackerObservations::Implementation::load(const Members& members, std::size
     }
     s.axis[i] = commands;
   }
+  given_states.gather(readings.poses, first, {members.at, members.count}, kBlockSize, s.states, s.state);
   for (std::size_t k = 0; k < members.count; ++k) {
     const std::size_t reading = first + members.at[k];
     s.station[k] = readings.station[reading];
@@ -259,7 +264,7 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
   TrackerScratch& s = tracker_scratch();
   load(members, first, s);
   const std::size_t n = members.count;
-  const PositionArrays positions{s.axis, n};
+  const PositionArrays positions{s.axis, n, s.state};
   const ConstPointArrays start{s.start[0], s.start[1], s.start[2]};
   const ConstPointArrays seen{s.seen[0], s.seen[1], s.seen[2]};
   pair.plan.transform(positions, start, {s.seen[0], s.seen[1], s.seen[2]});
@@ -327,6 +332,8 @@ TrackerObservations::TrackerObservations(const Machine& machine, const ErrorSet&
   own.tool_parameter = errors.parameter_count() - 3;
   own.tool_offset_error = errors.tool_offset_error;
   own.reversal = ReversalShift(errors);
+  own.given_states = GivenStates(machine, errors);
+  require_states(machine, errors, own.readings.poses);
   if (own.readings.measure == TrackerMeasure::range_and_angles) {
     for (std::size_t a = 0; a < 2; ++a) {
       for (double angle : own.readings.measured[a + 1]) {
@@ -428,7 +435,7 @@ bool TrackerObservations::displacement_rows(std::size_t first, std::size_t count
     own.find_members(first, count, pair, members);
     if (members.count == 0) continue;
     own.load(members, first, s);
-    own.pairs[pair].plan.transform({s.axis, members.count}, {s.start[0], s.start[1], s.start[2]},
+    own.pairs[pair].plan.transform({s.axis, members.count, s.state}, {s.start[0], s.start[1], s.start[2]},
                                    {s.seen[0], s.seen[1], s.seen[2]});
     own.residuals_of_runs(members, true, s);
     for (std::size_t direction = 0; direction < 3; ++direction) {
@@ -464,9 +471,11 @@ Eigen::Vector3d TrackerObservations::distance(std::size_t reading) const {
     s.positions[i] = poses.axis[i][reading] + own.reversal.shift(poses, i, reading);
     s.axis[i] = &s.positions[i];
   }
+  const std::uint16_t at[] = {0};
+  own.given_states.gather(own.readings.poses, reading, at, 1, s.states, s.state);
   Eigen::Vector3d seen;
   const Eigen::Vector3d& start = own.starts[own.readings.reflector[reading]];
-  own.pairs[own.pair_at(reading)].plan.transform({s.axis, 1}, {&start[0], &start[1], &start[2]},
+  own.pairs[own.pair_at(reading)].plan.transform({s.axis, 1, s.state}, {&start[0], &start[1], &start[2]},
                                                  {&seen[0], &seen[1], &seen[2]});
   const StationPose& station = own.stations[own.readings.station[reading]];
   return own.readings.point(reading) - station.body_from_tracker.transpose() * (seen - station.origin);

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/parallel_blocks.h"
@@ -111,6 +112,8 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
     chains.pair_of.push_back(pair);
   }
   const ReversalShift reversal(errors);
+  const GivenStates given(machine, errors);
+  require_states(machine, errors, poses);
   const std::size_t blocks = (poses.count() + kPosesPerBlock - 1) / kPosesPerBlock;
   std::vector<std::vector<Reading>> made(blocks);
   std::vector<std::size_t> hidden(blocks, 0);
@@ -119,11 +122,12 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
 
   for_each_block(blocks, options.threads, [&](std::size_t block) {
     std::vector<double> positions(machine.axes.size());
-    std::vector<const double*> axis;
+    std::vector<const double*> axis, state;
+    std::vector<double> states;
     for (const double& position : positions) axis.push_back(&position);
     const auto transformed = [&](const ChainPlan& plan, const Vector3d& start) {
       Vector3d seen;
-      plan.transform({axis, 1}, {&start[0], &start[1], &start[2]}, {&seen[0], &seen[1], &seen[2]});
+      plan.transform({axis, 1, state}, {&start[0], &start[1], &start[2]}, {&seen[0], &seen[1], &seen[2]});
       return seen;
     };
     const std::size_t last = std::min(poses.count(), (block + 1) * kPosesPerBlock);
@@ -131,6 +135,8 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
       for (std::size_t i = 0; i < positions.size(); ++i) {
         positions[i] = poses.axis[i][pose] + reversal.shift(poses, i, pose);
       }
+      const std::size_t chosen[] = {pose};
+      given.gather(poses, chosen, states, state);
       std::size_t first_sight = 0, end_sight = sights.size();
       if (options.choice != SightChoice::every) {
         first_sight = options.choice == SightChoice::cycle
@@ -186,6 +192,7 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
   for (const std::vector<Reading>& part : made) total += part.size();
   readings.reserve(machine.axes.size(), total);
   if (!poses.approach.empty()) readings.poses.approach.resize(machine.axes.size());
+  readings.poses.state.resize(poses.state.size());
   for (std::size_t block = 0; block < blocks; ++block) {
     result.hidden += hidden[block];
     for (const Reading& reading : made[block]) {
@@ -193,6 +200,9 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
       for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         readings.poses.axis[i].push_back(poses.axis[i][reading.pose]);
         if (!poses.approach.empty()) readings.poses.approach[i].push_back(poses.approach[i][reading.pose]);
+      }
+      for (std::size_t j = 0; j < poses.state.size(); ++j) {
+        if (!poses.state[j].empty()) readings.poses.state[j].push_back(poses.state[j][reading.pose]);
       }
       for (std::size_t k = 0; k < 3; ++k) readings.measured[k].push_back(reading.measured[static_cast<int>(k)]);
       readings.station.push_back(reading.sight.station);

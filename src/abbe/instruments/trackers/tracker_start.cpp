@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/instruments/instrument.h"
 
 namespace abbe {
@@ -27,7 +28,10 @@ std::vector<Vector3d> seen_points(const Machine& machine, const ErrorSet& errors
   std::array<std::vector<double>, 3> p;
   for (std::size_t c = 0; c < 3; ++c) p[c].assign(n, start[static_cast<int>(c)]);
   const ChainPlan plan(machine, errors, reflector.body, to);
-  plan.transform({axis, n}, {p[0].data(), p[1].data(), p[2].data()}, {p[0].data(), p[1].data(), p[2].data()});
+  std::vector<double> states;
+  std::vector<const double*> state;
+  GivenStates(machine, errors).gather(readings.poses, chosen, states, state);
+  plan.transform({axis, n, state}, {p[0].data(), p[1].data(), p[2].data()}, {p[0].data(), p[1].data(), p[2].data()});
   std::vector<Vector3d> points(n);
   for (std::size_t k = 0; k < n; ++k) points[k] = {p[0][k], p[1][k], p[2][k]};
   return points;

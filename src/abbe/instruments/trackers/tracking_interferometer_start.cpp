@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/geometry/best_fit_transform.h"
 #include "abbe/instruments/instrument.h"
 
@@ -17,11 +18,9 @@ using Eigen::Vector3d;
 constexpr std::size_t kLargest = 2000;  // readings per station
 
 /// Where the machine puts a point of one body, seen from another.
-Vector3d seen_point(const ChainPlan& plan, const std::vector<double>& positions, const Vector3d& point) {
-  std::vector<const double*> axis;
-  for (const double& position : positions) axis.push_back(&position);
+Vector3d seen_point(const ChainPlan& plan, const OnePose& pose, const Vector3d& point) {
   Vector3d seen = point;
-  plan.transform({axis, 1}, {&seen[0], &seen[1], &seen[2]}, {&seen[0], &seen[1], &seen[2]});
+  plan.transform(pose.arrays(), {&seen[0], &seen[1], &seen[2]}, {&seen[0], &seen[1], &seen[2]});
   return seen;
 }
 
@@ -69,7 +68,7 @@ class Collector {
  public:
   Collector(const Machine& machine, const ErrorSet& errors, const TrackingInterferometer& tracking,
             const InstrumentReadings& readings)
-      : machine_(machine), errors_(errors), tracking_(tracking), readings_(readings) {}
+      : machine_(machine), errors_(errors), tracking_(tracking), readings_(readings), given_states_(machine, errors) {}
 
   StationData collect(std::size_t station) const {
     const TrackingInterferometerSetup& setup = tracking_.setup();
@@ -89,7 +88,8 @@ class Collector {
       const auto value = [&](std::size_t place) { return tracking_.quantities()[used[place]].value; };
       Vector3d offset(value(0), value(1), value(2));
       if (tracking_.items()[readings_.item[k]].from == Body::tool) offset += errors_.tool_offset_error;
-      result.data.points.push_back(seen_point(plans[run], readings_.poses.pose(k), offset));
+      const std::vector<double> positions = readings_.poses.pose(k), states = given_states_.at(readings_.poses, k);
+      result.data.points.push_back(seen_point(plans[run], OnePose(positions, states), offset));
       result.data.lengths.push_back(readings_.measured[0][k] / (1 + value(7)));
       result.data.run.push_back(run);
     }
@@ -112,6 +112,7 @@ class Collector {
   const ErrorSet& errors_;
   const TrackingInterferometer& tracking_;
   const InstrumentReadings& readings_;
+  const GivenStates given_states_;
 };
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
 
 namespace abbe {
@@ -42,8 +44,14 @@ ToolPlaces actual_tool(const Machine& machine, const ErrorSet& errors, const Pos
   tool.direction.resize(3, columns);
   tool.covered.resize(count);
   if (count == 0) return tool;
+  const GivenStates given(machine, errors);
+  std::vector<std::size_t> all(given.any() ? count : 0);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<double> states;
+  std::vector<const double*> state;
+  given.gather(commands, all, states, state);
   const ChainPlan plan(machine, errors, Body::tool, Body::workpiece);
-  plan.transform({pointers, count}, {from[0].data(), from[1].data(), from[2].data()},
+  plan.transform({pointers, count, state}, {from[0].data(), from[1].data(), from[2].data()},
                  {to[0].data(), to[1].data(), to[2].data()}, rotation, tool.covered.data());
   for (std::size_t k = 0; k < count; ++k) {
     const auto column = static_cast<Eigen::Index>(k);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "abbe/geometry/rotation.h"
 
@@ -47,9 +48,11 @@ void rotation_vectors(DeviationBlock& block, const Eigen::Matrix3d& datum) {
 
 PositionArrays DeviationBlock::position_arrays(std::vector<const double*>& shifted, std::size_t from,
                                                std::size_t number) const {
-  shifted.resize(axis.size());
+  shifted.resize(axis.size() + state.size());
   for (std::size_t i = 0; i < axis.size(); ++i) shifted[i] = axis[i] + from;
-  return {shifted, number};
+  for (std::size_t j = 0; j < state.size(); ++j) shifted[axis.size() + j] = state[j] + from;
+  const std::span<const double* const> all(shifted);
+  return {all.first(axis.size()), number, all.subspan(axis.size())};
 }
 
 DeviationModel::DeviationModel(const Machine& machine, const ErrorSet& actual, const ErrorSet* reference,
@@ -124,6 +127,16 @@ void load_block(const PoseSource& poses, std::size_t index, DeviationBlock& bloc
     block.axis[i] = target[i] = block.positions[i].data();
   }
   poses.fill(block.first, block.count, target.data());
+  block.state.clear();
+  if (!poses.fill_states) return;
+  block.states.resize(poses.states);
+  target.clear();
+  for (std::vector<double>& values : block.states) {
+    values.resize(DeviationBlock::kSize);
+    target.push_back(values.data());
+    block.state.push_back(values.data());
+  }
+  poses.fill_states(block.first, block.count, target.data());
 }
 
 }  // namespace abbe

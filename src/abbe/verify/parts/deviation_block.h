@@ -17,12 +17,15 @@ struct DeviationBlock {
   std::size_t first = 0, count = 0;
   std::vector<std::vector<double>> positions;
   std::vector<const double*> axis;
+  std::vector<std::vector<double>> states;
+  std::vector<const double*> state;  ///< [states of the machine] or empty, as PositionArrays::state
   std::array<std::vector<double>, 3> point, seen, displacement, rotation;
   std::array<std::vector<double>, 9> reference_rotation, actual_rotation;
   std::vector<double> norm;
   std::vector<std::uint8_t> covered, also_covered;
 
-  PositionArrays position_arrays() const { return {axis, count}; }
+  PositionArrays position_arrays() const { return {axis, count, state}; }
+  /// @param shifted  becomes the pointers
   PositionArrays position_arrays(std::vector<const double*>& shifted, std::size_t from, std::size_t number) const;
 };
 
