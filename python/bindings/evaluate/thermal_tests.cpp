@@ -11,7 +11,7 @@
 namespace abbe::python {
 namespace {
 
-using Numbers = std::map<std::string, double>;
+using OptionNumbers = std::map<std::string, double>;
 
 /// What a sensor read, with the unit of its values.
 struct SensorSeries {
@@ -23,7 +23,7 @@ SensorSeries series_of(const ThermalSensor& sensor) { return {sensor.series, sen
 
 /// The numbers of a test by the names of the options of the command.
 template <class Test>
-void enter_numbers(const Numbers& given, std::span<const TestNumber<Test>> known, Test& test) {
+void enter_numbers(const OptionNumbers& given, std::span<const TestNumber<Test>> known, Test& test) {
   for (const auto& [name, value] : given) {
     const TestNumber<Test>& number = entry_named("options", name, known);
     if (!(value >= number.from && value <= number.to)) {
@@ -35,7 +35,7 @@ void enter_numbers(const Numbers& given, std::span<const TestNumber<Test>> known
 }
 
 template <class Test, class Read, class Parse>
-Evaluation thermal_test(const ReadingsArgument& argument, const Numbers& options,
+Evaluation thermal_test(const ReadingsArgument& argument, const OptionNumbers& options,
                         std::span<const TestNumber<Test>> known, const Read& read, const Parse& parse,
                         const Tolerances& tolerances, const std::string& file) {
   Test test;
@@ -50,18 +50,18 @@ ThermalReadings parse_sensors(const NamedColumns& columns) { return parse_therma
 AxisDistortionReadings read_targets(const std::filesystem::path& path) { return read_axis_distortion(path); }
 AxisDistortionReadings parse_targets(const NamedColumns& columns) { return parse_axis_distortion(columns); }
 
-Evaluation etve(const ReadingsArgument& readings, const Numbers& options, const Tolerances& tolerances,
+Evaluation etve(const ReadingsArgument& readings, const OptionNumbers& options, const Tolerances& tolerances,
                 const std::string& file) {
   return thermal_test<EtveTest>(readings, options, etve_numbers(), read_sensors, parse_sensors, tolerances, file);
 }
 
-Evaluation spindle_distortion(const ReadingsArgument& readings, const Numbers& options, const Tolerances& tolerances,
-                              const std::string& file) {
+Evaluation spindle_distortion(const ReadingsArgument& readings, const OptionNumbers& options,
+                              const Tolerances& tolerances, const std::string& file) {
   return thermal_test<SpindleDistortionTest>(readings, options, spindle_distortion_numbers(), read_sensors,
                                              parse_sensors, tolerances, file);
 }
 
-Evaluation axis_distortion(const ReadingsArgument& readings, const Numbers& options, const Tolerances& tolerances,
+Evaluation axis_distortion(const ReadingsArgument& readings, const OptionNumbers& options, const Tolerances& tolerances,
                            const std::string& file) {
   return thermal_test<AxisDistortionTest>(readings, options, axis_distortion_numbers(), read_targets, parse_targets,
                                           tolerances, file);
@@ -233,7 +233,7 @@ void bind_thermal_tests(nb::module_& module) {
   bind_thermal_parts(module);
   bind_thermal_results(module);
   module.def(
-      "evaluate_etve", &etve, nb::arg("readings"), nb::kw_only(), nb::arg("options") = Numbers{},
+      "evaluate_etve", &etve, nb::arg("readings"), nb::kw_only(), nb::arg("options") = OptionNumbers{},
       nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Environmental temperature variation error (ISO 230-3), as an Evaluation.\n\n"
       "readings: a file, or columns [n] in the order of time: time_min (or time_s, time_h), and one column per sensor\n"
@@ -249,14 +249,14 @@ void bind_thermal_tests(nb::module_& module) {
       "(3.0, 3.0, 2.0)\n");
   module.def(
       "evaluate_spindle_distortion", &spindle_distortion, nb::arg("readings"), nb::kw_only(),
-      nb::arg("options") = Numbers{}, nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
+      nb::arg("options") = OptionNumbers{}, nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Thermal distortion by a rotating spindle (ISO 230-3), as an Evaluation.\n\n"
       "readings as for evaluate_etve(). options: {'start_min': 0, 'stop_min': 240}: when the spindle begins to rotate\n"
       "and stops, by the time of the readings; 'plane_distance_mm', 'u_reading_um', 'u_reading_urad'. numbers is a\n"
       "SpindleDistortionNumbers. Raises InputError. Definitions: docs/evaluate-thermal.md.");
   module.def(
-      "evaluate_axis_distortion", &axis_distortion, nb::arg("readings"), nb::kw_only(), nb::arg("options") = Numbers{},
-      nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
+      "evaluate_axis_distortion", &axis_distortion, nb::arg("readings"), nb::kw_only(),
+      nb::arg("options") = OptionNumbers{}, nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Thermal distortion by a moving linear axis (ISO 230-3), as an Evaluation.\n\n"
       "readings: a file, or columns [n] in the order of time: time_min, target_mm, deviation_um (actual minus target) "
       "or\n"

@@ -209,7 +209,9 @@ TEST(ArmBranches, FlippedWristAndElbowAreFound) {
     flipped[5] += std::numbers::pi;
     const bool within = std::abs(std::remainder(flipped[3], kTurn)) < 179 * kDegree &&
                         std::abs(std::remainder(flipped[5], kTurn)) < 179 * kDegree;
-    if (within) EXPECT_TRUE(has(flipped)) << i;
+    if (within) {
+      EXPECT_TRUE(has(flipped)) << i;
+    }
     for (const std::vector<double>& found : branches.commands) {
       const RigidTransform pose = nominal_workpiece_from_tool(machine, found);
       EXPECT_LE((pose.translation - wanted.translation).norm(), 1e-8);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "abbe/machine/axis_unit.h"
 #include "abbe/report/drawings/thermal_plot.h"
 #include "abbe/report/evaluations/thermal_figures.h"
 #include "abbe/report/evaluations/thermal_report.h"
@@ -62,10 +63,10 @@ void add_axis_targets(const AxisDistortion& distortion, EvaluationReport& report
     for (const AxisTargetSensor& one : target.sensors) {
       const bool is_angle = one.sensor.is_angle;
       const std::string unit = is_angle ? "_urad" : "_um";
-      const double micro = micro_factor(is_angle);
+      const double micro = micro_per_unit(is_angle);
       table.rows.push_back({sensor_symbol(target, one), fmt::format("{:.6g} mm", target.target),
-                            std::to_string(one.sensor.series.time.size()), micro_words(one.change.value, is_angle),
-                            micro_words(one.change_at_end, is_angle)});
+                            std::to_string(one.sensor.series.time.size()), change_words(one.change.value, is_angle),
+                            change_words(one.change_at_end, is_angle)});
       entry["sensors"].push_back({{"name", one.sensor.series.name},
                                   {"readings", one.sensor.series.time.size()},
                                   {"range" + unit, micro * one.change.value},
@@ -94,7 +95,8 @@ void add_axis_plots(const AxisDistortion& distortion, EvaluationReport& report) 
     for (const AxisTargetSensor& one : target.sensors) {
       const TimeSeries& series = one.sensor.series;
       auto& curves = one.is_deviation ? deviations : one.sensor.is_angle ? angles : across;
-      curves.push_back({&series, series.values.front(), micro_factor(one.sensor.is_angle), sensor_symbol(target, one)});
+      curves.push_back(
+          {&series, series.values.front(), micro_per_unit(one.sensor.is_angle), sensor_symbol(target, one)});
     }
   }
   for (const AxisExpansion& one : distortion.expansions) {

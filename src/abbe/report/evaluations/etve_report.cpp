@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "abbe/machine/axis_unit.h"
 #include "abbe/report/drawings/thermal_plot.h"
 #include "abbe/report/evaluations/thermal_figures.h"
 #include "abbe/report/evaluations/thermal_report.h"
@@ -66,13 +67,13 @@ void add_sensor_details(const EtveEvaluation& evaluation, EvaluationReport& repo
     const TimeSeries& series = one.sensor.series;
     const bool is_angle = one.sensor.is_angle;
     const std::string unit = is_angle ? "_urad" : "_um";
-    table.rows.push_back({series.name, std::to_string(series.time.size()), micro_words(one.range.low, is_angle),
-                          micro_words(one.range.high, is_angle), micro_words(one.range.value(), is_angle)});
+    table.rows.push_back({series.name, std::to_string(series.time.size()), change_words(one.range.low, is_angle),
+                          change_words(one.range.high, is_angle), change_words(one.range.value(), is_angle)});
     sensors.push_back({{"name", series.name},
                        {"readings", series.time.size()},
-                       {"lowest" + unit, micro_factor(is_angle) * one.range.low},
+                       {"lowest" + unit, micro_per_unit(is_angle) * one.range.low},
                        {"lowest_at_s", one.range.low_at},
-                       {"highest" + unit, micro_factor(is_angle) * one.range.high},
+                       {"highest" + unit, micro_per_unit(is_angle) * one.range.high},
                        {"highest_at_s", one.range.high_at}});
   }
   nlohmann::ordered_json temperatures = nlohmann::ordered_json::array();
@@ -100,7 +101,7 @@ void add_plots(const EtveEvaluation& evaluation, EvaluationReport& report) {
   for (const EtveSensor& one : evaluation.sensors) {
     const TimeSeries& series = one.sensor.series;
     (one.sensor.is_angle ? angles : displacements)
-        .push_back({&series, series.values.front(), micro_factor(one.sensor.is_angle), series.name});
+        .push_back({&series, series.values.front(), micro_per_unit(one.sensor.is_angle), series.name});
   }
   for (const EtveTemperature& one : evaluation.temperatures)
     temperatures.push_back({&one.series, 0, 1, one.series.name});

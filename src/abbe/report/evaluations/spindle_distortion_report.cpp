@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "abbe/machine/axis_unit.h"
 #include "abbe/report/drawings/thermal_plot.h"
 #include "abbe/report/evaluations/thermal_figures.h"
 #include "abbe/report/evaluations/thermal_report.h"
@@ -37,9 +38,9 @@ void add_spindle_sensors(const SpindleDistortion& distortion, EvaluationReport& 
   for (const SpindleSensor& one : distortion.sensors) {
     const bool is_angle = one.sensor.is_angle;
     const std::string unit = is_angle ? "_urad" : "_um";
-    const double micro = micro_factor(is_angle);
-    table.rows.push_back({one.sensor.series.name, micro_words(one.change_at_stop, is_angle),
-                          micro_words(one.change_at_end, is_angle), constant_words(one.warming),
+    const double micro = micro_per_unit(is_angle);
+    table.rows.push_back({one.sensor.series.name, change_words(one.change_at_stop, is_angle),
+                          change_words(one.change_at_end, is_angle), constant_words(one.warming),
                           constant_words(one.recovery)});
     nlohmann::ordered_json entry = {{"name", one.sensor.series.name},
                                     {"readings", one.sensor.series.time.size()},
@@ -60,8 +61,11 @@ void add_spindle_plots(const SpindleDistortion& distortion, EvaluationReport& re
   for (const SpindleSensor& one : distortion.sensors) {
     const TimeSeries& series = one.sensor.series;
     (one.sensor.is_angle ? angles : displacements)
-        .push_back(
-            {&series, one.value_at_start, micro_factor(one.sensor.is_angle), series.name, {one.warming, one.recovery}});
+        .push_back({&series,
+                    one.value_at_start,
+                    micro_per_unit(one.sensor.is_angle),
+                    series.name,
+                    {one.warming, one.recovery}});
   }
   for (const TimeSeries& series : distortion.temperatures) temperatures.push_back({&series, 0, 1, series.name});
   const ShownTime time = shown_time(from, to);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/machine/axis_unit.h"
+
 namespace abbe {
 namespace {
 
@@ -28,10 +30,8 @@ std::string missing_range(ThermalStatus status) {
 
 }  // namespace
 
-double micro_factor(bool is_angle) { return is_angle ? 1e6 : 1e3; }
-
-std::string micro_words(double value, bool is_angle) {
-  const double shown = micro_factor(is_angle) * value;
+std::string change_words(double value, bool is_angle) {
+  const double shown = micro_per_unit(is_angle) * value;
   return fmt::format("{:.2f} {}", std::abs(shown) < 0.005 ? 0 : shown, is_angle ? "\xC2\xB5rad" : "\xC2\xB5m");
 }
 
@@ -101,7 +101,7 @@ EvaluationFigure time_constant_figure(const std::string& symbol, const std::stri
 nlohmann::ordered_json response_json(const FirstOrderResponse& response, bool is_angle) {
   if (response.status != ResponseStatus::done) return {{"not_evaluated", response_words(response.status)}};
   const std::string unit = is_angle ? "_urad" : "_um";
-  const double micro = micro_factor(is_angle);
+  const double micro = micro_per_unit(is_angle);
   return {{"time_constant_min", response.time_constant / kMinute},
           {"expanded_uncertainty_min", 2 * response.uncertainty / kMinute},
           {"final_change" + unit, micro * response.change},
