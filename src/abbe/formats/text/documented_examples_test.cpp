@@ -30,15 +30,18 @@ std::vector<std::string> blocks(const std::string& kind, const char* page = "for
 
 TEST(DocumentedExamples, AreAccepted) {
   const std::vector<std::string> toml = blocks("toml"), csv = blocks("csv");
-  ASSERT_EQ(toml.size(), 5U);
+  ASSERT_EQ(toml.size(), 6U);
   ASSERT_EQ(csv.size(), 2U);
   const Machine machine = parse_machine(toml[0], "machine");
   EXPECT_EQ(machine.chain(), "w C' X' b Z t");
+  const std::string column = "name = \"column\"\nchain = \"w X' b Z A t\"\n" + toml[1] +
+                             "[axis.X]\ntravel_mm = [0, 1]\n[axis.Z]\ntravel_mm = [0, 1]\n[axis.A]\nendless = true\n";
+  EXPECT_EQ(parse_machine(column, "states").states.size(), 7U);
 
   const auto folder = std::filesystem::path(testing::TempDir()) / "abbe_documented";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "ebx.csv") << "X_mm,EBX_urad,remark\n0,1,a\n1400,2,b\n";
-  std::string errors = toml[1];
+  std::string errors = toml[2];
   const std::string covariance = "covariance = \"a.covariance.csv\"";
   ASSERT_NE(errors.find(covariance), std::string::npos);
   errors.erase(errors.find(covariance), covariance.size());
@@ -53,12 +56,12 @@ TEST(DocumentedExamples, AreAccepted) {
   ASSERT_EQ(mapping.size(), 1U);
   EXPECT_EQ(parse_import_mapping(mapping[0], "m.import.toml").columns.size(), 2U);
 
-  const Study simulated = parse_study(toml[2], "a.study.toml", machine);
+  const Study simulated = parse_study(toml[3], "a.study.toml", machine);
   EXPECT_EQ(simulated.setups[0].plans.size(), 4U);
   EXPECT_EQ(simulated.identification->motions.size(), 12U);
-  const Study measured = parse_study(toml[3], "b.study.toml", machine);
+  const Study measured = parse_study(toml[4], "b.study.toml", machine);
   EXPECT_TRUE(measured.setups[0].noise_from_data);
-  const Study bar = parse_study(toml[4], "c.study.toml", machine);
+  const Study bar = parse_study(toml[5], "c.study.toml", machine);
   EXPECT_EQ(bar.setups[0].plans.size(), 2U);
 }
 

@@ -39,12 +39,13 @@ class ResponseFit {
     const auto begin = std::lower_bound(series.time.begin(), series.time.end(), from) - series.time.begin();
     const auto end = std::upper_bound(series.time.begin(), series.time.end(), to) - series.time.begin();
     const auto first = static_cast<std::size_t>(begin), last = static_cast<std::size_t>(end);
+    base_ = last > first ? series.values[first] : 0;
     block_ = last > first ? (last - first + kMostValues - 1) / kMostValues : 1;
     for (std::size_t i = first; i + block_ <= last; i += block_) {
       double time = 0, value = 0;
       for (std::size_t k = i; k < i + block_; ++k) {
         time += (series.time[k] - from) / static_cast<double>(block_);
-        value += series.values[k] / static_cast<double>(block_);
+        value += (series.values[k] - base_) / static_cast<double>(block_);
       }
       time_.push_back(time);
       values_.push_back(value);
@@ -55,6 +56,8 @@ class ResponseFit {
   }
 
   std::size_t count() const { return time_.size(); }
+  /// What values are less than readings: readings that do not change have no rounding then.
+  double base() const { return base_; }
   /// Readings of which each value is the mean.
   double block() const { return static_cast<double>(block_); }
   double duration() const { return time_.back() - time_.front(); }
@@ -117,7 +120,7 @@ class ResponseFit {
 
   std::size_t block_ = 1;
   std::vector<double> time_, values_;
-  double scatter_ = 0;
+  double base_ = 0, scatter_ = 0;
 };
 
 /// The logarithm of the time constant with the smallest sum of squares; an end of the range if it is there.
@@ -218,7 +221,7 @@ FirstOrderResponse first_order_response(const TimeSeries& series, double from, d
   const std::optional<double> high = bound_of_constant(fit, best, longest, limit);
   if (!low || !high) return result;
   result.status = ResponseStatus::done;
-  result.start = found.start;
+  result.start = fit.base() + found.start;
   result.change = found.change;
   result.time_constant = constant;
   result.uncertainty = std::max(constant - *low, *high - constant) / 2;
