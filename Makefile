@@ -6,7 +6,8 @@
 #   make closed-loop  measure, identify, compensate, run in LinuxCNC, verify: examples/closed_loop
 #   make test      set-up, unit and quick tests, those of Python, the most important ones under the sanitizers, short fuzzing
 #   make long      the other tests: LinuxCNC, published studies, simulated campaigns, notebooks, most pages, the site
-#   make sanitize  all quick tests under the sanitizers; continuous integration runs make test, make long and this
+#   make sanitize  all quick tests under the sanitizers
+#   make sanitize-libraries  of them, those of the libraries; continuous integration runs make test, make long and this
 #   make python    set-up, the Python package and its tests
 #   make site      set-up, documentation and reference of the Python package as a site: build/site/index.html
 #   make unit      build and run the tests of single folders
@@ -25,14 +26,12 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop test long sanitize python site unit quick lint format bench bench-python fuzz coverage package package-test install install-linuxcnc clean
+.PHONY: build demo closed-loop test long sanitize sanitize-libraries python site unit quick lint format bench bench-python fuzz coverage package package-test install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 FUZZ_SECONDS ?= 60
 TEST_FUZZ_SECONDS ?= 10
-# asan-rest: without those that make test has just run.
-SANITIZE_TESTS ?= asan
 DEMO_STUDY ?= examples/aguado/aguado.study.toml
 DEMO_RESULTS ?= build/demo
 LOOP_RESULTS ?= build/closed-loop
@@ -45,10 +44,7 @@ SET_UP_SITE := $(if $(filter ON,$(ABBE_SITE)),site)
 WITH_PYTHON := -DABBE_PYTHON=$(ABBE_PYTHON) $(if $(SET_UP_PYTHON),-DPython_EXECUTABLE=$(CURDIR)/build/python-venv/bin/python)
 # Tests that start a LinuxCNC or a browser wait most of the time.
 TEST_JOBS ?= $(shell expr 2 \* $(JOBS))
-# Compilers and tests may differ in number where nothing is asked for: .ci/build
-ifneq ($(origin JOBS),file)
 export JOBS
-endif
 export CTEST_OUTPUT_ON_FAILURE := 1
 
 # What is said at the start: minutes that the whole takes on two cores when nothing is built and nothing is in ccache.
@@ -109,7 +105,14 @@ sanitize:
 	@.ci/set-up test $(SET_UP_PYTHON)
 	@.ci/build --expect $(SANITIZE_MINUTES) "make $@ builds all with the sanitizers and runs the quick tests" asan -DABBE_WERROR=ON \
 	  $(WITH_PYTHON)
-	@ctest --preset $(SANITIZE_TESTS) -j $(JOBS)
+	@ctest --preset asan -j $(JOBS)
+
+# Without those of make test, and without the programs, which start the same code a thousand times.
+sanitize-libraries:
+	@.ci/set-up test
+	@.ci/build --target abbe_libraries_tests --expect $(SANITIZE_MINUTES) "make $@ builds the libraries with the sanitizers and runs their tests" \
+	  asan -DABBE_WERROR=ON
+	@ctest --preset asan-libraries -j $(JOBS)
 
 # In the folder of the development build, configured as by make test.
 python:

@@ -5,9 +5,13 @@
 set(ABBE_SHARDS 0 CACHE STRING "0: each test is one of ctest's; else the parts in which a test program is run")
 
 # What `make test` builds with the sanitizers: the programs for fuzzing, which run the readers of all files, and the tests of
-# what serves a controller. `make sanitize` builds and runs the others as well.
+# what serves a controller. `make sanitize-libraries` adds the other libraries that read files or compute; `make sanitize`
+# builds and runs everything.
 add_custom_target(abbe_parts)
 set(abbe_parts_prefixes errors. runtime.)
+add_custom_target(abbe_libraries_tests)
+set(abbe_libraries_prefixes
+  compensate. controls. formats. geometry. history. identify. instruments. machine. plan. report. verify.)
 
 # Programs that only `make long` builds and runs.
 add_custom_target(abbe_long_programs)
@@ -44,6 +48,9 @@ function(abbe_discover_tests program prefix label timeout)
   if(prefix IN_LIST abbe_parts_prefixes)
     add_dependencies(abbe_parts ${program})
     list(APPEND labels parts)
+  elseif(prefix IN_LIST abbe_libraries_prefixes)
+    add_dependencies(abbe_libraries_tests ${program})
+    list(APPEND labels libraries)
   endif()
   if(NOT ABBE_SHARDS)
     if(label STREQUAL unit)

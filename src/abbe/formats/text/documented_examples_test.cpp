@@ -45,8 +45,10 @@ TEST(DocumentedExamples, AreAccepted) {
   const std::string covariance = "covariance = \"a.covariance.csv\"";
   ASSERT_NE(errors.find(covariance), std::string::npos);
   errors.erase(errors.find(covariance), covariance.size());
-  const ErrorsFile contents = parse_errors(errors, folder / "a.errors.toml", machine);
-  EXPECT_EQ(contents.errors.motions.size(), 5U);
+  const Machine with_state =
+      parse_machine(toml[0] + "[state.ambient]\nkind = \"measured\"\nunit = \"degC\"\n", "state");
+  const ErrorsFile contents = parse_errors(errors, folder / "a.errors.toml", with_state, StatesOfErrors::allowed);
+  EXPECT_EQ(contents.errors.motions.size(), 6U);
   EXPECT_EQ(contents.errors.motions[4].basis.nodes.size(), 2U);
 
   EXPECT_EQ(parse_measurements(csv[0], "csv", machine).readings.count(), 2U);
@@ -56,9 +58,9 @@ TEST(DocumentedExamples, AreAccepted) {
   ASSERT_EQ(mapping.size(), 1U);
   EXPECT_EQ(parse_import_mapping(mapping[0], "m.import.toml").columns.size(), 2U);
 
-  const Study simulated = parse_study(toml[3], "a.study.toml", machine);
+  const Study simulated = parse_study(toml[3], "a.study.toml", with_state);
   EXPECT_EQ(simulated.setups[0].plans.size(), 4U);
-  EXPECT_EQ(simulated.identification->motions.size(), 12U);
+  EXPECT_EQ(simulated.identification->motions.size(), 13U);
   const Study measured = parse_study(toml[4], "b.study.toml", machine);
   EXPECT_TRUE(measured.setups[0].noise_from_data);
   const Study bar = parse_study(toml[5], "c.study.toml", machine);
