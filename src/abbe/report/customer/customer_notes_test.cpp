@@ -63,6 +63,10 @@ TEST(CustomerNotes, WordsStandInThePlacesOfOthers) {
       "ein.");
   EXPECT_EQ(german("Section 7 is not evaluated: left edge: fewer than 20 points."),
             "Schnitt 7 ist nicht ausgewertet: linke Kante: weniger als 20 Punkte.");
+  EXPECT_EQ(german("air was not read for 2 h 30 min: what it did in between is taken as a straight line."),
+            "air wurde 2 h 30 min lang nicht abgelesen: Der Verlauf dazwischen gilt als gerade Linie.");
+  EXPECT_EQ(german("tau_Z: no change beyond the scatter of the readings."),
+            "tau_Z: keine Änderung über die Streuung der Messwerte hinaus.");
   EXPECT_EQ(german("before: G_cw: fewer than three readings."), "Vor der Korrektur: G_cw: weniger als drei Messwerte.");
   EXPECT_EQ(german("radial_x1_total: fewer than 2 whole turns."), "radial_x1_total: weniger als 2 ganze Umdrehungen.");
   EXPECT_EQ(german("not identified: EXX, all six error motions of Y, EC0Y. They are taken as zero; the uncertainty of "
