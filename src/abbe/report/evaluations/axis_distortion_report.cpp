@@ -64,8 +64,9 @@ void add_axis_targets(const AxisDistortion& distortion, EvaluationReport& report
       const std::string unit = is_angle ? "_urad" : "_um";
       const double micro = micro_factor(is_angle);
       table.rows.push_back({sensor_symbol(target, one), fmt::format("{:.6g} mm", target.target),
-                            std::to_string(one.sensor.series.time.size()), micro_words(one.change.value, is_angle),
-                            micro_words(one.change_at_end, is_angle)});
+                            std::to_string(one.sensor.series.time.size()),
+                            thermal_value_words(one.change.value, is_angle),
+                            thermal_value_words(one.change_at_end, is_angle)});
       entry["sensors"].push_back({{"name", one.sensor.series.name},
                                   {"readings", one.sensor.series.time.size()},
                                   {"range" + unit, micro * one.change.value},

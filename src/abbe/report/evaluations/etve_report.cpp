@@ -66,8 +66,9 @@ void add_sensor_details(const EtveEvaluation& evaluation, EvaluationReport& repo
     const TimeSeries& series = one.sensor.series;
     const bool is_angle = one.sensor.is_angle;
     const std::string unit = is_angle ? "_urad" : "_um";
-    table.rows.push_back({series.name, std::to_string(series.time.size()), micro_words(one.range.low, is_angle),
-                          micro_words(one.range.high, is_angle), micro_words(one.range.value(), is_angle)});
+    table.rows.push_back({series.name, std::to_string(series.time.size()), thermal_value_words(one.range.low, is_angle),
+                          thermal_value_words(one.range.high, is_angle),
+                          thermal_value_words(one.range.value(), is_angle)});
     sensors.push_back({{"name", series.name},
                        {"readings", series.time.size()},
                        {"lowest" + unit, micro_factor(is_angle) * one.range.low},

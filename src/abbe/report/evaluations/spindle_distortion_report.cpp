@@ -38,8 +38,8 @@ void add_spindle_sensors(const SpindleDistortion& distortion, EvaluationReport& 
     const bool is_angle = one.sensor.is_angle;
     const std::string unit = is_angle ? "_urad" : "_um";
     const double micro = micro_factor(is_angle);
-    table.rows.push_back({one.sensor.series.name, micro_words(one.change_at_stop, is_angle),
-                          micro_words(one.change_at_end, is_angle), constant_words(one.warming),
+    table.rows.push_back({one.sensor.series.name, thermal_value_words(one.change_at_stop, is_angle),
+                          thermal_value_words(one.change_at_end, is_angle), constant_words(one.warming),
                           constant_words(one.recovery)});
     nlohmann::ordered_json entry = {{"name", one.sensor.series.name},
                                     {"readings", one.sensor.series.time.size()},

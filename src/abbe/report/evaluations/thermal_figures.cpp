@@ -30,7 +30,7 @@ std::string missing_range(ThermalStatus status) {
 
 double micro_factor(bool is_angle) { return is_angle ? 1e6 : 1e3; }
 
-std::string micro_words(double value, bool is_angle) {
+std::string thermal_value_words(double value, bool is_angle) {
   const double shown = micro_factor(is_angle) * value;
   return fmt::format("{:.2f} {}", std::abs(shown) < 0.005 ? 0 : shown, is_angle ? "\xC2\xB5rad" : "\xC2\xB5m");
 }

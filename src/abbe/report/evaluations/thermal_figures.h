@@ -24,7 +24,7 @@ std::string response_words(ResponseStatus status);
 /// um per mm, or urad per rad.
 double micro_factor(bool is_angle);
 /// "12.3 um", "12.3 urad" for people.
-std::string micro_words(double value, bool is_angle);
+std::string thermal_value_words(double value, bool is_angle);
 /// "2 h 30 min".
 std::string duration_words(double seconds);
 
