@@ -33,7 +33,8 @@ struct PosesCommand {
   std::string machine, errors, poses, output;
   std::vector<std::string> hold;
   std::optional<double> limit_um;
-  double largest_turn_deg = 0.5, leave_out_factor = 0;
+  std::optional<double> largest_turn_deg;
+  double leave_out_factor = 0;
   bool dry_run = false, json = false, accept_misfit = false;
 };
 
@@ -41,12 +42,12 @@ int run_robot_program(const PosesCommand& command, RobotLanguage language) {
   RobotProgramRequest request;
   request.machine_file = command.machine;
   request.machine = read_machine(command.machine);
-  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
+  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, StatesOfErrors::allowed);
   request.program = parse_robot_program(read_text_file(command.poses), language, command.poses);
   if (!command.output.empty()) refuse_input_as_output(command.output);
   request.leave_out_factor = command.leave_out_factor;
   request.limit_um = command.limit_um;
-  request.largest_turn = command.largest_turn_deg * kDegree;
+  if (command.largest_turn_deg) request.largest_turn = *command.largest_turn_deg * kDegree;
   request.held = axes_named(request.machine, "--hold", command.hold);
   const CorrectedRobotProgram result = correct_robot_program(request);
   const bool written = result.refused.empty() && !command.dry_run;
@@ -66,12 +67,12 @@ int run_poses(const PosesCommand& command) {
   request.machine_file = command.machine;
   request.errors_file = command.errors;
   request.machine = read_machine(command.machine);
-  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
+  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, StatesOfErrors::allowed);
   request.poses = read_poses(command.poses, request.machine);
   if (!command.output.empty()) refuse_input_as_output(command.output);
   request.leave_out_factor = command.leave_out_factor;
   request.limit_um = command.limit_um;
-  request.largest_turn = command.largest_turn_deg * kDegree;
+  if (command.largest_turn_deg) request.largest_turn = *command.largest_turn_deg * kDegree;
   request.held = axes_named(request.machine, "--hold", command.hold);
   const CorrectedCommands result = correct_commands(request);
   const bool written = result.refused.empty() && !command.dry_run;
@@ -115,10 +116,8 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   command->add_output_file("-o,--output", options->output, "CSV (commands, status, what is left) or program to write",
                            &options->dry_run);
   command->add_option("--hold", options->hold, "Axis that keeps its commands; repeatable");
-  command
-      ->add_option("--largest-turn-deg", options->largest_turn_deg,
-                   "How far rotary axes may turn for a correction near a singularity")
-      ->capture_default_str();
+  command->add_option("--largest-turn-deg", options->largest_turn_deg,
+                      "How far rotary axes may turn for a correction (default 0.5; of an arm 5)");
   command->add_option("--limit-um", options->limit_um, "Refuse corrections of the functional point above this, um");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
                       "Leave out errors that are everywhere smaller than this many of their standard uncertainties");

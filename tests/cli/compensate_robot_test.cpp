@@ -1,6 +1,7 @@
 // `abbe compensate poses` of robot programs, and `abbe import --dh`.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,7 @@
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/robot/robot_program.h"
 #include "cli/command_test.h"
 
@@ -74,6 +76,43 @@ TEST_F(CompensateRobot, WhatMustNotBeUsedIsNotWritten) {
   EXPECT_THAT(dry.out, HasSubstr("dry run: nothing written"));
   folder.write("own.src", read_text_file(examples + "arm.src"));
   EXPECT_EQ(program("own.src", {"-o", "./own.src", "--force"}).exit_code, ExitCode::bad_input);
+}
+
+TEST_F(CompensateRobot, PosesOfAnArmUnderLoadAreReachedWhole) {
+  const std::vector<std::string> arm = {"--machine", examples + "loaded.machine.toml", "--errors",
+                                        examples + "loaded.errors.toml"};
+  const auto poses = [&](const std::string& file, std::vector<std::string> more) {
+    more.insert(more.begin(), {"compensate", "poses", file});
+    more.insert(more.end(), arm.begin(), arm.end());
+    return abbe(more);
+  };
+  const CommandResult result = poses(examples + "loaded.poses.csv", {"-o", "corrected.csv"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const Machine machine = read_machine(examples + "loaded.machine.toml");
+  const ErrorSet errors = read_errors(examples + "loaded.errors.toml", machine, StatesOfErrors::allowed).errors;
+  const PoseList before = read_poses(examples + "loaded.poses.csv", machine);
+  const PoseList after = read_poses((folder.path() / "corrected.csv").string(), machine);
+  ASSERT_EQ(after.count(), before.count());
+  const std::size_t payload = find_state(machine, "payload");
+  for (std::size_t k = 0; k < before.count(); ++k) {
+    std::vector<double> given(machine.states.size(), std::nan(""));
+    given[payload] = before.state[payload][k];
+    const RigidTransform wanted = nominal_workpiece_from_tool(machine, before.pose(k));
+    const RigidTransform off = actual_workpiece_from_tool(machine, errors, before.pose(k), given);
+    const RigidTransform actual = actual_workpiece_from_tool(machine, errors, after.pose(k), given);
+    EXPECT_GE((off.translation - wanted.translation).norm(), 0.1);
+    EXPECT_LE((actual.translation - wanted.translation).norm(), 1e-6);
+    EXPECT_LE((actual.rotation - wanted.rotation).norm(), 1e-8);
+  }
+  // The first two poses differ by their load alone: the springs take 5 kg more.
+  EXPECT_GT(std::abs(after.axis[1][1] - after.axis[1][0]), 1e-5);
+  folder.write("unloaded.csv", "A1_deg,A2_deg,A3_deg,A4_deg,A5_deg,A6_deg\n0,-20,30,0,45,0\n");
+  const CommandResult unknown = poses("unloaded.csv", {"--dry-run"});
+  EXPECT_EQ(unknown.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(unknown.err, HasSubstr("payload_kg: the errors depend on this state, and the poses do not give it"));
+  const CommandResult program = poses(examples + "arm.mod", {"--dry-run"});
+  EXPECT_EQ(program.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(program.err, HasSubstr("state.payload: the errors depend on this measured state"));
 }
 
 TEST_F(CompensateRobot, TablesOfJointsBecomeMachineFiles) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,19 @@
 #include "abbe/compensate/left_out_errors.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
 
+/// How far rotary axes may turn for a correction where nothing else is asked for, rad. The axes of an arm turn for
+/// every correction of the point, not only near singularities.
+inline constexpr double kLargestTurn = 0.5 * kDegree, kLargestTurnOfArm = 5 * kDegree;
+
 struct CorrectedPosesOptions {
-  double largest_turn = CorrectionOptions().largest_turn;  ///< of rotary axes near a singularity, rad
-  double leave_out_factor = 0;      ///< errors below so many of their standard uncertainties are left out; 0: none
-  std::vector<std::size_t> held{};  ///< axes that keep their commands
+  std::optional<double> largest_turn{};  ///< of rotary axes, rad; none: kLargestTurn, of an arm kLargestTurnOfArm
+  double leave_out_factor = 0;           ///< errors below so many of their standard uncertainties are left out; 0: none
+  std::vector<std::size_t> held{};       ///< axes that keep their commands
 };
 
 /// A figure and the pose where it is, from 1; 0: nowhere.
@@ -46,7 +52,9 @@ struct CorrectedPoses {
   LeftOutErrors left_out;              ///< errors below their uncertainty
 };
 
-/// Axis commands that bring the actual tool to where the nominal machine has it, pose by pose.
+/// Axis commands that bring the actual tool to where the nominal machine has it, pose by pose: point and direction, of
+/// an arm the full pose. States that are computed from the commands follow the corrected ones; poses that do not give a
+/// measured state of the errors are not covered.
 /// @param covariance  of errors.parameters(), or 0 x 0: what the errors state of their standard uncertainties
 CorrectedPoses corrected_poses(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
                                const PoseList& poses, const CorrectedPosesOptions& options = {});

@@ -49,13 +49,14 @@ namespace abbe {
 struct CommandsRequest {
   Machine machine;
   ErrorsFile errors;                      ///< without covariance: its standard uncertainties, as if independent
-  PoseList poses;                         ///< commands
+  PoseList poses;                         ///< commands, and the measured states that the errors depend on
   std::string machine_file, errors_file;  ///< names for messages
 
-  double largest_turn = 0.5 * kDegree;  ///< --largest-turn-deg: of rotary axes near a singularity; at most 10 degrees
-  std::vector<std::size_t> held;        ///< --hold: axes that keep their commands
-  double leave_out_factor = 0;          ///< --leave-out-below-uncertainty: 0 to 1000; 0: none is left out
-  std::optional<double> limit_um;       ///< --limit-um: larger corrections of the point are refused; above zero
+  /// --largest-turn-deg: of rotary axes, at most 10 degrees; none: 0.5 degrees, of an arm 5 degrees
+  std::optional<double> largest_turn;
+  std::vector<std::size_t> held;   ///< --hold: axes that keep their commands
+  double leave_out_factor = 0;     ///< --leave-out-below-uncertainty: 0 to 1000; 0: none is left out; no states
+  std::optional<double> limit_um;  ///< --limit-um: larger corrections of the point are refused; above zero
 };
 
 /// Corrected commands, and what is left. They need nothing of the request that they answer.

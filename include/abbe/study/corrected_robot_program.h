@@ -32,7 +32,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/compensate/full_pose_inverse.h"
+#include "abbe/compensate/corrected_poses.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/robot/robot_program.h"
 #include "abbe/geometry/angle_units.h"
@@ -49,10 +49,10 @@ struct RobotProgramRequest {
   RobotProgram program;
   std::string machine_file;  ///< name for messages
 
-  double largest_turn = 0.5 * kDegree;  ///< --largest-turn-deg: of the orientation near a singularity
-  std::vector<std::size_t> held;        ///< --hold: axes that keep their commands
-  double leave_out_factor = 0;          ///< --leave-out-below-uncertainty: only 0, nothing is left out of a program
-  std::optional<double> limit_um;       ///< --limit-um: larger corrections of the point are refused; above zero
+  double largest_turn = kLargestTurnOfArm;  ///< --largest-turn-deg: of all axes together; at most 10 degrees
+  std::vector<std::size_t> held;            ///< --hold: axes that keep their commands
+  double leave_out_factor = 0;              ///< --leave-out-below-uncertainty: only 0, a program keeps all errors
+  std::optional<double> limit_um;           ///< --limit-um: larger corrections of the point are refused; above zero
 };
 
 /// One position; lengths in mm, angles in rad.

@@ -15,9 +15,9 @@ namespace abbe::python {
 namespace {
 
 CorrectedCommands commands_of(const MachineErrors& errors, const ArrayLike& positions,
-                              const std::vector<std::string>& hold, double largest_turn_deg, double leave_out,
-                              std::optional<double> limit_um, bool accept_misfit, const std::string& machine_file,
-                              const std::string& errors_file) {
+                              const std::vector<std::string>& hold, std::optional<double> largest_turn_deg,
+                              double leave_out, std::optional<double> limit_um, bool accept_misfit,
+                              const std::string& machine_file, const std::string& errors_file) {
   require_trusted(errors, accept_misfit, errors_file);
   const Positions poses(positions, errors.machine);
   if (poses.single()) throw InputError({.field = "positions_mm_rad"}, "is a single pose", "shape (n, axes)");
@@ -28,7 +28,7 @@ CorrectedCommands commands_of(const MachineErrors& errors, const ArrayLike& posi
   request.machine_file = machine_file;
   request.errors_file = errors_file;
   request.held = axis_indices(errors.machine, hold);
-  request.largest_turn = largest_turn_deg * kDegree;
+  if (largest_turn_deg) request.largest_turn = *largest_turn_deg * kDegree;
   request.leave_out_factor = leave_out;
   request.limit_um = limit_um;
   return computed([&] { return correct_commands(request); });
@@ -142,23 +142,23 @@ void bind_corrected_commands(nb::module_& module) {
                            r.poses.count(), r.not_reached, 1e3 * r.corrected.largest_shift.value,
                            r.refused.empty() ? "" : ", refused");
       });
-  module.def("correct_commands", &commands_of, nb::arg("errors"), nb::arg("positions_mm_rad"), nb::kw_only(),
-             nb::arg("hold") = std::vector<std::string>{}, nb::arg("largest_turn_deg") = 0.5,
-             nb::arg("leave_out_below_uncertainty") = 0.0, nb::arg("limit_um") = nb::none(),
-             nb::arg("accept_misfit") = false, nb::arg("machine_file") = "machine.toml",
-             nb::arg("errors_file") = "errors.toml",
-             "Commands that bring the actual tool to where the nominal machine has it, with uncertainties.\n\n"
-             "positions_mm_rad [n, axes]: nominal commands. hold: axes that keep their commands. largest_turn_deg: of\n"
-             "rotary axes near a singularity. leave_out_below_uncertainty: errors below so many of their standard\n"
-             "uncertainties are left out. limit_um: larger corrections are refused. Without uncertainties and texts,\n"
-             "CompensatedInverse is quicker. Method: docs/compensation.md.\n\n"
-             ">>> import abbe\n"
-             ">>> mill = abbe.Machine.from_chain(\"w X' Y' b Z t\")\n"
-             ">>> errors = abbe.Errors(mill)\n"
-             ">>> errors.add_location('EC0Y', value_urad=20, u_urad=2)\n"
-             ">>> result = abbe.correct_commands(errors, [[100, 100, 0]])\n"
-             ">>> result.positions_mm_rad.round(6).tolist(), result.uncertainty_mm.round(6).tolist()\n"
-             "([[100.002, 100.0, 0.0]], [0.0002])\n");
+  module.def(
+      "correct_commands", &commands_of, nb::arg("errors"), nb::arg("positions_mm_rad"), nb::kw_only(),
+      nb::arg("hold") = std::vector<std::string>{}, nb::arg("largest_turn_deg") = nb::none(),
+      nb::arg("leave_out_below_uncertainty") = 0.0, nb::arg("limit_um") = nb::none(), nb::arg("accept_misfit") = false,
+      nb::arg("machine_file") = "machine.toml", nb::arg("errors_file") = "errors.toml",
+      "Commands that bring the actual tool to where the nominal machine has it, with uncertainties.\n\n"
+      "positions_mm_rad [n, axes]: nominal commands. hold: axes that keep their commands. largest_turn_deg: of\n"
+      "rotary axes; None: 0.5, of an arm 5. leave_out_below_uncertainty: errors below so many of their standard\n"
+      "uncertainties are left out. limit_um: larger corrections are refused. Without uncertainties and texts,\n"
+      "CompensatedInverse is quicker. Method: docs/compensation.md.\n\n"
+      ">>> import abbe\n"
+      ">>> mill = abbe.Machine.from_chain(\"w X' Y' b Z t\")\n"
+      ">>> errors = abbe.Errors(mill)\n"
+      ">>> errors.add_location('EC0Y', value_urad=20, u_urad=2)\n"
+      ">>> result = abbe.correct_commands(errors, [[100, 100, 0]])\n"
+      ">>> result.positions_mm_rad.round(6).tolist(), result.uncertainty_mm.round(6).tolist()\n"
+      "([[100.002, 100.0, 0.0]], [0.0002])\n");
   if (!nb::hasattr(module, "read_poses")) {
     module.def(
         "read_poses",

@@ -9,6 +9,9 @@
 namespace abbe {
 namespace {
 
+/// Of the largest singular value: below, it is rounding, and what it would divide as well.
+constexpr double kNoSingularValue = 1e-13;
+
 /// Square systems whose smallest singular value is surely not below t; false for all others.
 bool solve_directly(const SmallMatrix& a, const SmallVector& b, double t, SmallVector& y) {
   if (a.rows() == 2 && a.cols() == 2) {
@@ -58,6 +61,7 @@ ArmVector bounded_in_order(const ArmMatrix& a, const ArmVector& b, double larges
     for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i) {
       const double s = svd.singularValues()[i];
       if (s * most < size) cut = true;
+      if (s <= kNoSingularValue * svd.singularValues()[0]) continue;
       // s / max(s^2, t^2) with t = |b| / most, without dividing by a bound of zero.
       const double t = most > 0 ? size / most : std::numeric_limits<double>::infinity();
       const double divisor = std::max(s * s, t * t);

@@ -2,14 +2,16 @@
 
 #include <Eigen/Core>
 
+#include "abbe/machine/machine.h"
+
 namespace abbe {
 
 /// Up to three unknowns and three equations, on the stack.
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
-/// Up to six unknowns and six equations.
-using ArmMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-using ArmVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+/// Up to six equations, an unknown for every axis.
+using ArmMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxAxes, kMaxAxes>;
+using ArmVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>;
 
 /// A vector y with |y| <= largest that makes |a y - b| small and changes continuously with a and b.
 ///

@@ -75,7 +75,7 @@ TEST(CompensatedArm, NearAWristSingularityThePointIsReachedAndTheTurnBounded) {
   EXPECT_GT(corrected.orientation_left[0], 1e-9);
   double turned = 0;
   for (std::size_t i = 0; i < 6; ++i) turned = std::hypot(turned, corrected.commands.axis[i][0] - poses.axis[i][0]);
-  EXPECT_LE(turned, CorrectionOptions().largest_turn * 1.001);
+  EXPECT_LE(turned, kLargestTurnOfArm * 1.001);
 }
 
 TEST(CompensatedArm, FromAnyStartATargetIsReachedOnTheNearestBranch) {
@@ -84,6 +84,7 @@ TEST(CompensatedArm, FromAnyStartATargetIsReachedOnTheNearestBranch) {
     const ErrorSet errors = test::tens_of_micrometres(machine, 11);
     CorrectionOptions options;
     options.target = TargetKind::full_pose;
+    options.largest_turn = kLargestTurnOfArm;
     const CompensatedInverse inverse(machine, errors, options);
     const PoseList poses = inner_poses(machine, 60, 13);
     int reached = 0;

@@ -102,7 +102,7 @@ struct CompensatedInverse::Implementation {
     }
     for (std::size_t i = 0; i < machine.axes.size(); ++i) repeats[i] = repeats_each_turn(machine, i, errors);
     stepper = std::make_unique<CorrectionStep>(machine, options, kept);
-    if (stepper->is_arm()) {
+    if (stepper->is_inverted()) {
       Machine keeping = machine;  // setting axes are the first to be held, at their command of the start
       for (const HeldAxis& axis : kept) keeping.axes[axis.axis].setting = true;
       branches = std::make_unique<InverseKinematics>(keeping);
@@ -187,9 +187,19 @@ struct CompensatedInverse::Implementation {
 
   /// Steps of the poses that are active, which stand evaluated, until each has come to its end or there were too many.
   void iterate(Block& block) const {
+    block.point_only = false;
+    take_steps(block);
+    if (!stepper->is_arm() || !any_active(block)) return;
+    // Near a singularity the steps for the orientation may go to and fro.
+    block.point_only = true;
+    take_steps(block);
+  }
+
+  void take_steps(Block& block) const {
+    const int refresh = stepper->is_arm() ? 1 : kRefresh;
     for (int i = 0; i < options.largest_iterations; ++i) {
       if (!any_active(block)) break;
-      if (i % kRefresh == 0) differentiate(block);
+      if (i % refresh == 0) differentiate(block);
       for (std::size_t k = 0; k < block.count; ++k) {
         if (block.active[k] != 0) stepper->step(block, k);
       }
@@ -340,6 +350,16 @@ struct CompensatedInverse::Implementation {
     }
   }
 
+  /// A pose that the nominal arm reaches only beyond an end of travel may be within the travel of the actual one.
+  bool is_near_travel(const InverseSolution& solution) const {
+    double square = 0;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const double most = machine.axes[i].kind == AxisKind::linear ? options.largest_shift : options.largest_turn;
+      square += std::pow(solution.excess[i] / most, 2);
+    }
+    return square <= 1;
+  }
+
   /// An arm starts from the nominal solution nearest to the commands that came, which may be far away.
   void start_on_a_branch(Block& block) const {
     InverseResult found;
@@ -352,9 +372,10 @@ struct CompensatedInverse::Implementation {
       target.direction = vector_at(block.goal_direction, k);
       if (options.target == TargetKind::full_pose) target.orientation = matrix_at(block.goal_rotation, k);
       branches->solve(target, start.data(), found);
-      if (found.status != InverseStatus::solved) continue;
+      if (found.solutions.empty() || !is_near_travel(found.solutions.front())) continue;
       for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        block.command[i][k] = block.position[i][k] = found.solutions.front().position[i];
+        block.command[i][k] = block.position[i][k] =
+            found.solutions.front().position[i] - found.solutions.front().excess[i];
       }
     }
   }

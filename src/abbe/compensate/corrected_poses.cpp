@@ -1,10 +1,13 @@
 #include "abbe/compensate/corrected_poses.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "abbe/compensate/program/program_uncertainty.h"
 #include "abbe/compensate/working_axes.h"
 #include "abbe/errors/actual_pose.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/geometry/angle.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/machine_check.h"
@@ -27,11 +30,12 @@ void state_statistics(const Machine& machine, const PoseList& poses, CorrectedPo
 
 /// What stays of all errors, those included that were left out.
 void state_left_by_all(const Machine& machine, const ErrorSet& errors, const PoseList& poses, TargetKind target,
-                       CorrectedPoses& result) {
+                       const GivenStates& states, CorrectedPoses& result) {
   for (std::size_t k = 0; k < poses.count(); ++k) {
     if (!std::isfinite(result.position_left[k])) continue;
     const RigidTransform wanted = nominal_workpiece_from_tool(machine, poses.pose(k));
-    const RigidTransform actual = actual_workpiece_from_tool(machine, errors, result.commands.pose(k));
+    const RigidTransform actual =
+        actual_workpiece_from_tool(machine, errors, result.commands.pose(k), states.at(poses, k));
     result.position_left[k] = (actual.translation - wanted.translation).norm();
     result.orientation_left[k] =
         target == TargetKind::full_pose
@@ -40,14 +44,12 @@ void state_left_by_all(const Machine& machine, const ErrorSet& errors, const Pos
   }
 }
 
-/// Six axes of an arm are there for the whole pose; machine tools turn the tool about itself.
-bool serves_whole_pose(const Machine& machine, const std::vector<std::size_t>& held) {
+/// As pose_target(); what is wrong with the machine or with what is held, the inverse says.
+TargetKind target_of(const Machine& machine, const std::vector<std::size_t>& held) {
   std::vector<HeldAxis> kept;
-  for (const std::size_t axis : held) {
-    if (axis >= machine.axes.size()) return false;
-    kept.push_back({axis, 0});
-  }
-  return find_problems(machine).empty() && working_axes(machine, TargetKind::full_pose, kept).arm.size() == 6;
+  for (const std::size_t axis : held) kept.push_back({axis, 0});
+  const bool exist = std::all_of(held.begin(), held.end(), [&](std::size_t i) { return i < machine.axes.size(); });
+  return exist && find_problems(machine).empty() ? pose_target(machine, kept) : TargetKind::point_and_direction;
 }
 
 }  // namespace
@@ -60,8 +62,9 @@ CorrectedPoses corrected_poses(const Machine& machine, const ErrorSet& errors, c
   if (asked.leave_out_factor > 0)
     result.left_out = leave_out_uncertain(machine, corrected, covariance, asked.leave_out_factor);
   CorrectionOptions options;
-  options.largest_turn = asked.largest_turn;
-  if (serves_whole_pose(machine, asked.held)) options.target = TargetKind::full_pose;
+  options.target = target_of(machine, asked.held);
+  options.largest_turn =
+      asked.largest_turn.value_or(options.target == TargetKind::full_pose ? kLargestTurnOfArm : kLargestTurn);
   const CompensatedInverse inverse(machine, corrected, options, asked.held);
   result.problem = inverse.problem();
   if (!result.problem.empty()) return result;
@@ -77,20 +80,30 @@ CorrectedPoses corrected_poses(const Machine& machine, const ErrorSet& errors, c
     in.push_back(poses.axis[i].data());
     out.push_back(result.commands.axis[i].data());
   }
-  inverse.correct({in, count},
+  const GivenStates states(machine, corrected);
+  std::vector<double> memory;
+  std::vector<const double*> given;
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  states.gather(poses, all, memory, given);
+  inverse.correct({in, count, given},
                   {out, result.status.data(), result.position_left.data(), result.orientation_left.data()});
 
-  if (!result.left_out.names.empty()) state_left_by_all(machine, errors, poses, options.target, result);
+  if (!result.left_out.names.empty()) {
+    state_left_by_all(machine, errors, poses, options.target, GivenStates(machine, errors), result);
+  }
   const bool stated = !covariance.isZero(0);
   const std::vector<bool> moved(machine.axes.size(), true);
   for (std::size_t k = 0; k < count; ++k) {
     Deviation deviation;
-    const bool known = tool_deviation(machine, corrected, poses.pose(k), deviation) == PoseStatus::ok;
+    const std::vector<double> at = states.at(poses, k);
+    const bool known =
+        tool_deviation(machine, corrected, poses.pose(k), deviation, nullptr, nullptr, at) == PoseStatus::ok;
     result.shift.push_back(known ? deviation.head<3>().norm() : std::nan(""));
     if (!stated) continue;
     ProgramPlace place;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) place.position[i] = poses.axis[i][k];
-    result.uncertainty.push_back(known ? uncertainty_at(machine, errors, covariance, place, moved).point
+    result.uncertainty.push_back(known ? uncertainty_at(machine, errors, covariance, place, moved, at).point
                                        : std::nan(""));
   }
   state_statistics(machine, poses, result);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/words/corrected_poses_words.h"
@@ -12,10 +13,15 @@
 namespace abbe {
 
 CorrectedCommands correct_commands(const CommandsRequest& request) {
-  refuse_states(request.machine, request.errors.errors, "a correction of commands");
+  const std::size_t missing = missing_state(request.machine, request.errors.errors, request.poses);
+  if (missing != kNoState) {
+    throw InputError({.field = state_column(request.machine.states[missing])},
+                     "the errors depend on this state, and the poses do not give it", "a column with this name");
+  }
+  if (request.leave_out_factor != 0) refuse_states(request.machine, request.errors.errors, "what leaves out errors");
   check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
-  check_largest_turn(request.largest_turn);
+  if (request.largest_turn) check_largest_turn(*request.largest_turn);
   CorrectedCommands result;
   result.machine = request.machine;
   result.poses = request.poses;

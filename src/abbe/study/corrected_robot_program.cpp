@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
+#include "abbe/compensate/compensated_inverse.h"
 #include "abbe/errors/actual_pose.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/machine/inverse_kinematics.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/machine/position_words.h"
 
@@ -21,6 +24,7 @@ namespace {
 constexpr double kAtTravelEnd = 1e-9;  // mm or rad
 /// rad; numbers of programs are rounded, and a joint at the end of a range of its configuration may be beyond it.
 constexpr double kRangeRounding = 1e-3;
+constexpr double kSingularArm = 1e-5;  // InverseSolution::singular_margin below which a pose has no certain commands
 
 /// [axes] joint of the program that moves each axis: the number in the name of the axis.
 std::vector<std::size_t> joints_of_axes(const RobotProgramRequest& request) {
@@ -107,13 +111,33 @@ bool fits_configuration(const RobotPosition& position, const std::vector<std::si
   return true;
 }
 
+struct OneCorrection {
+  CorrectionStatus status = CorrectionStatus::not_run;
+  std::vector<double> commands;
+  double position_left = 0, orientation_left = 0;
+};
+
+OneCorrection corrected_once(const CompensatedInverse& inverse, const std::vector<double>& nominal) {
+  OneCorrection result;
+  result.commands = nominal;
+  std::vector<const double*> in;
+  std::vector<double*> out;
+  for (std::size_t i = 0; i < nominal.size(); ++i) {
+    in.push_back(&nominal[i]);
+    out.push_back(&result.commands[i]);
+  }
+  inverse.correct({in, 1}, {out, &result.status, &result.position_left, &result.orientation_left});
+  return result;
+}
+
 class RobotCorrector {
  public:
   explicit RobotCorrector(const RobotProgramRequest& request)
       : request_(request),
         joints_(joints_of_axes(request)),
-        actual_(request.machine, request.errors.errors, {.largest_turn = request.largest_turn}, request.held),
-        nominal_(request.machine, ErrorSet{}, {.largest_turn = 1}) {}
+        actual_(request.machine, request.errors.errors,
+                {.target = TargetKind::full_pose, .largest_turn = request.largest_turn}, request.held),
+        nominal_(request.machine, {.held = {}, .reference = {}, .all_turns = true}) {}
 
   CorrectedRobotPosition correct(const RobotPosition& position, RobotValues& values) {
     CorrectedRobotPosition result;
@@ -133,7 +157,7 @@ class RobotCorrector {
     Deviation deviation;
     tool_deviation(request_.machine, request_.errors.errors, result.nominal, deviation);
     result.shift = deviation.head<3>().norm();
-    const FullPoseResult found = actual_.reach(wanted, result.nominal);
+    const OneCorrection found = corrected_once(actual_, result.nominal);
     if (!reaches_point(found.status)) {
       result.problem = fmt::format("{}: {:.3g} um and {:.3g} urad would be left", correction_status_text(found.status),
                                    1e3 * found.position_left, 1e6 * found.orientation_left);
@@ -168,19 +192,24 @@ class RobotCorrector {
   /// position before.
   void choose_branch(const RobotPosition& position, const RigidTransform& wanted,
                      CorrectedRobotPosition& result) const {
-    const ArmBranches branches = arm_branches(request_.machine, wanted);
-    if (branches.is_singular) {
-      result.problem = "singular: infinitely many axis positions have this pose";
-      return;
-    }
-    std::vector<const std::vector<double>*> fitting;
-    for (const std::vector<double>& commands : branches.commands) {
-      if (fits_configuration(position, joints_, commands)) fitting.push_back(&commands);
+    const InverseResult branches = nominal_.solve(PoseTarget::at(wanted), start_for(position));
+    std::vector<std::vector<double>> fitting;
+    for (const InverseSolution& solution : branches.solutions) {
+      if (!solution.within_travel) continue;
+      if (solution.singularity != PoseSingularity::none || solution.singular_margin < kSingularArm) {
+        result.problem = "singular: infinitely many axis positions have this pose";
+        return;
+      }
+      std::vector<double> commands(solution.position.begin(),
+                                   solution.position.begin() + static_cast<std::ptrdiff_t>(joints_.size()));
+      if (fits_configuration(position, joints_, commands)) fitting.push_back(std::move(commands));
     }
     if (fitting.empty()) {
-      result.problem = branches.commands.empty()
+      result.problem = branches.status == InverseStatus::solved
+                           ? "no axis positions with this pose have the configuration that the position states"
+                       : branches.status == InverseStatus::outside_travel
                            ? "no axis positions within the travels have this pose"
-                           : "no axis positions with this pose have the configuration that the position states";
+                           : describe(request_.machine, branches);
       return;
     }
     if (fitting.size() > 1 && before_.empty()) {
@@ -191,16 +220,28 @@ class RobotCorrector {
       return;
     }
     result.is_nearest = fitting.size() > 1;
-    const auto distance = [&](const std::vector<double>* commands) {
+    const auto distance = [&](const std::vector<double>& commands) {
       double square = 0;
-      for (std::size_t i = 0; i < commands->size() && !before_.empty(); ++i) {
+      for (std::size_t i = 0; i < commands.size() && !before_.empty(); ++i) {
         const double scale = request_.machine.axes[i].kind == AxisKind::linear ? 1e-3 : 1;
-        square += std::pow(scale * ((*commands)[i] - before_[i]), 2);
+        square += std::pow(scale * (commands[i] - before_[i]), 2);
       }
       return square;
     };
-    result.nominal = **std::min_element(fitting.begin(), fitting.end(),
-                                        [&](const auto* a, const auto* b) { return distance(a) < distance(b); });
+    result.nominal = *std::min_element(fitting.begin(), fitting.end(),
+                                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  }
+
+  /// Where the search of branches starts: endless axes are found on the turn that is nearest to it.
+  std::vector<double> start_for(const RobotPosition& position) const {
+    std::vector<double> start = before_;
+    start.resize(joints_.size(), 0.0);
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      if (joints_[i] >= 6 || !request_.machine.axes[i].endless || !position.configuration[joints_[i]]) continue;
+      const JointRange& range = *position.configuration[joints_[i]];
+      start[i] = std::midpoint(range.from, range.to);
+    }
+    return start;
   }
 
   /// The numbers of the corrected position as they are written, and what these leave.
@@ -228,8 +269,12 @@ class RobotCorrector {
     } else {
       values = robot_pose_numbers(language, position, nominal_workpiece_from_tool(request_.machine, result.corrected));
       for (std::size_t i = 0; i < values.size(); ++i) written.pose[i].value = as_written(i, values[i]);
-      const FullPoseResult there = nominal_.reach(robot_pose(request_.program, written), result.corrected);
-      if (reaches_point(there.status)) reached = there.commands;
+      const InverseResult there =
+          nominal_.solve(PoseTarget::at(robot_pose(request_.program, written)), result.corrected);
+      if (there.status == InverseStatus::solved) {
+        const auto& commands = there.solutions.front().position;
+        reached.assign(commands.begin(), commands.begin() + static_cast<std::ptrdiff_t>(joints_.size()));
+      }
     }
     const RigidTransform actual = actual_workpiece_from_tool(request_.machine, request_.errors.errors, reached);
     result.position_left = (actual.translation - wanted.translation).norm();
@@ -238,7 +283,8 @@ class RobotCorrector {
 
   const RobotProgramRequest& request_;
   std::vector<std::size_t> joints_;
-  FullPoseInverse actual_, nominal_;
+  CompensatedInverse actual_;
+  InverseKinematics nominal_;
   std::vector<double> before_;  ///< commands of the position before; empty: not known
 };
 
@@ -254,6 +300,14 @@ CorrectedRobotProgram correct_robot_program(const RobotProgramRequest& request) 
   const std::vector<MachineProblem> problems = find_problems(request.machine);
   if (!problems.empty()) throw InputError({.file = request.machine_file}, problems.front().text());
   check_frames(request);
+  PoseList no_states;
+  no_states.append(std::vector<double>(request.machine.axes.size(), 0.0));
+  const std::size_t missing = missing_state(request.machine, request.errors.errors, no_states);
+  if (missing != kNoState) {
+    throw InputError({.field = "state." + request.machine.states[missing].name},
+                     "the errors depend on this measured state, which a robot program does not give",
+                     "errors with states that follow from the commands, such as torques of gravity");
+  }
   RobotCorrector corrector(request);
   CorrectedRobotProgram result;
   result.left = request.program.left;

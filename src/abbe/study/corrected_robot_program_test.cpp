@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -28,6 +29,23 @@ RobotProgramRequest robot_request(const std::string& name) {
   return request;
 }
 
+/// Commands of a nominal arm near others, by Newton's method and the derivatives of the deviation.
+std::vector<double> nominal_commands(const Machine& machine, const RigidTransform& wanted,
+                                     std::vector<double> commands) {
+  for (int i = 0; i < 30; ++i) {
+    const RigidTransform pose = nominal_workpiece_from_tool(machine, commands);
+    Deviation deviation;
+    Eigen::MatrixXd by_positions;
+    tool_deviation(machine, ErrorSet{}, commands, deviation, nullptr, &by_positions);
+    Eigen::Matrix<double, 6, 1> missing;
+    missing << wanted.translation - pose.translation, rotation_vector(wanted.rotation * pose.rotation.transpose());
+    const Eigen::VectorXd step = by_positions.fullPivLu().solve(missing);
+    for (std::size_t k = 0; k < commands.size(); ++k) commands[k] += step[static_cast<Eigen::Index>(k)];
+  }
+  EXPECT_LE((nominal_workpiece_from_tool(machine, commands).translation - wanted.translation).norm(), 1e-9);
+  return commands;
+}
+
 /// Commands that a control with the nominal kinematics takes for a corrected position; the search starts nearby.
 std::vector<double> commands_of_control(const RobotProgramRequest& request, const RobotProgram& corrected,
                                         std::size_t k, const std::vector<double>& near) {
@@ -38,10 +56,7 @@ std::vector<double> commands_of_control(const RobotProgramRequest& request, cons
       commands.push_back(position.joints[i]->value * robot_joint_unit(corrected.language, false));
     return commands;
   }
-  const FullPoseInverse nominal(request.machine, ErrorSet{});
-  const FullPoseResult result = nominal.reach(robot_pose(corrected, position), near);
-  EXPECT_EQ(result.status, CorrectionStatus::reached);
-  return result.commands;
+  return nominal_commands(request.machine, robot_pose(corrected, position), near);
 }
 
 TEST(CorrectedRobotPositions, BringTheActualToolToTheNominalPoseInEveryLanguage) {
@@ -81,9 +96,8 @@ TEST(CorrectedRobotPositions, ACartesianTargetIsThePoseLessTheErrorWhereTheArmTh
   const RigidTransform wanted = robot_pose(request.program, request.program.positions[1]);
   RigidTransform target = wanted;
   std::vector<double> commands = result.positions[1].nominal;
-  const FullPoseInverse nominal(request.machine, ErrorSet{});
   for (int i = 0; i < 20; ++i) {
-    commands = nominal.reach(target, commands).commands;
+    commands = nominal_commands(request.machine, target, commands);
     const RigidTransform actual = actual_workpiece_from_tool(request.machine, request.errors.errors, commands);
     const RigidTransform error = nominal_workpiece_from_tool(request.machine, commands).inverse() * actual;
     target = wanted * error.inverse();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "abbe/compensate/program/program_report.h"
@@ -26,7 +27,9 @@ Eigen::MatrixXd parameter_covariance(const ErrorSet& errors, const Eigen::Matrix
 /// Uncertainty of the correction at one place of a program.
 /// @param covariance  as parameter_covariance() gives it
 /// @param moved       [axes] true for those that a word moves
+/// @param given       values of measured states, as tool_deviation() takes them
 PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
-                                const ProgramPlace& place, const std::vector<bool>& moved);
+                                const ProgramPlace& place, const std::vector<bool>& moved,
+                                std::span<const double> given = {});
 
 }  // namespace abbe

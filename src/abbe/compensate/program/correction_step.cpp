@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kStandingTurn = 1e-13;         // rad; a step below this is rounding
 constexpr double kStandingLimitedTurn = 1e-10;  // rad; the same of an arm whose turn is bounded, which settles slowly
+constexpr double kArmLever = 1e3;               // mm; a turn of 1 mrad counts as 1 mm of a linear axis of an arm
 constexpr double kStandingPart = 0.1;           // of the tolerance: a step of the point below this gains nothing
 constexpr double kSmallSine = 1e-3;             // below, the first two terms of its series give the angle to rounding
 constexpr double kWellSpread = 1e-3;  // determinant against the squares above which an inverse keeps its digits
@@ -37,6 +38,7 @@ void CorrectionStep::choose_axes(const std::vector<HeldAxis>& kept) {
   turning_ = std::move(working.turning);
   reaching_ = std::move(working.reaching);
   arm_ = std::move(working.arm);
+  is_inverted_ = working.is_inverted;
   orientation_rows_ = working.orientation_rows;
   usual_ = orientation_rows_ == 2 && turning_.size() == 2 && reaching_.size() == 3;
   for (const std::size_t axis : reaching_) usual_ = usual_ && machine_.axes[axis].kind == AxisKind::linear;
@@ -227,17 +229,20 @@ void CorrectionStep::general_step(CorrectionBlock& block, std::size_t k, const E
     block.position[reaching_[c]][k] += scale[entry(c)] * by_reach[entry(c)];
 }
 
-/// Step of a jointed arm, whose axes take point and orientation together; where they cannot, the point comes first.
+/// Step of an arm, whose axes take point and orientation together; where they cannot, the point comes first.
 void CorrectionStep::arm_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
                               const Eigen::Vector3d& turn) const {
-  ArmMatrix a(entry(3 + orientation_rows_), entry(arm_.size()));
-  ArmVector b(entry(3 + orientation_rows_)), turned(entry(arm_.size()));
+  const std::size_t turns = block.point_only ? 0 : orientation_rows_;
+  ArmMatrix a(entry(3 + turns), entry(arm_.size()));
+  ArmVector b(entry(3 + turns)), turned(entry(arm_.size()));
   b.head<3>() = missing;
-  for (std::size_t r = 0; r < orientation_rows_; ++r)
-    b[entry(3 + r)] = orientation_rows_ == 2 ? turn.dot(vector_at(block.across[r], k)) : turn[entry(r)];
+  for (std::size_t r = 0; r < turns; ++r)
+    b[entry(3 + r)] = turns == 2 ? turn.dot(vector_at(block.across[r], k)) : turn[entry(r)];
+  const auto unit = [&](std::size_t axis) { return machine_.axes[axis].kind == AxisKind::linear ? kArmLever : 1; };
   for (std::size_t c = 0; c < arm_.size(); ++c) {
-    for (std::size_t r = 0; r < 3 + orientation_rows_; ++r) a(entry(r), entry(c)) = derivative(block, arm_[c], r, k);
-    turned[entry(c)] = at_end(block, arm_[c], k) ? 0 : block.position[arm_[c]][k] - block.command[arm_[c]][k];
+    const std::size_t axis = arm_[c];
+    for (std::size_t r = 0; r < 3 + turns; ++r) a(entry(r), entry(c)) = unit(axis) * derivative(block, axis, r, k);
+    turned[entry(c)] = at_end(block, axis, k) ? 0 : (block.position[axis][k] - block.command[axis][k]) / unit(axis);
   }
   bool shift_bounded = false, turn_bounded = false;
   const ArmVector step =
@@ -253,7 +258,9 @@ void CorrectionStep::arm_step(CorrectionBlock& block, std::size_t k, const Eigen
     }
     return;
   }
-  for (std::size_t c = 0; c < arm_.size(); ++c) block.position[arm_[c]][k] += step[entry(c)];
+  for (std::size_t c = 0; c < arm_.size(); ++c) {
+    if (!at_end(block, arm_[c], k)) block.position[arm_[c]][k] += unit(arm_[c]) * step[entry(c)];
+  }
 }
 
 /// One step of one pose, or its end.
@@ -264,6 +271,10 @@ void CorrectionStep::step(CorrectionBlock& block, std::size_t k) const {
   const bool at_point = block.position_residual[k] <= options_.position_tolerance;
   if (at_point && (orientation_rows_ == 0 || block.orientation_residual[k] <= options_.orientation_tolerance)) {
     finish(block, k, CorrectionStatus::reached);
+    return;
+  }
+  if (at_point && block.point_only) {
+    finish(block, k, CorrectionStatus::turn_limited);
     return;
   }
   if (!arm_.empty()) {

@@ -34,6 +34,7 @@ struct CorrectionBlock {
   /// Axes that were kept at an end of their travel and work no more: their derivative is zero. Set only if any is.
   std::array<std::array<std::uint8_t, kCorrectionBlock>, kMaxAxes> at_end;
   bool any_at_end = false;
+  bool point_only = false;  ///< arms: the orientation is left as it comes
   /// As PositionArrays::state, from the first pose of the block on.
   std::array<const double*, kMaxStates> state;
   std::size_t states = 0;
@@ -61,6 +62,7 @@ class CorrectionStep {
   /// Rows of the derivative beyond the three of the point: 0, 2 (across the wanted direction) or 3.
   std::size_t orientation_rows() const { return orientation_rows_; }
   bool is_arm() const { return !arm_.empty(); }
+  bool is_inverted() const { return is_inverted_; }  ///< as WorkingAxes
 
   /// Prepares steps with the derivative CorrectionBlock::by_command[(axis * rows + row) * count + k].
   void take_derivative(CorrectionBlock& block) const;
@@ -97,7 +99,8 @@ class CorrectionStep {
   Machine machine_;
   CorrectionOptions options_;
   std::vector<std::size_t> turning_, reaching_;
-  std::vector<std::size_t> arm_;  // of a jointed arm, instead of both
+  std::vector<std::size_t> arm_;  // of an arm, instead of both
+  bool is_inverted_ = false;
   std::size_t orientation_rows_ = 0;
   bool usual_ = false;  // two turning and three linear axes, tool direction wanted
 };

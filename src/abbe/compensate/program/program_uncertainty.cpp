@@ -21,7 +21,8 @@ Eigen::MatrixXd parameter_covariance(const ErrorSet& errors, const Eigen::Matrix
 }
 
 PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
-                                const ProgramPlace& place, const std::vector<bool>& moved) {
+                                const ProgramPlace& place, const std::vector<bool>& moved,
+                                std::span<const double> given) {
   PlaceUncertainty result;
   if (covariance.rows() == 0 || covariance.isZero(0)) return result;
   Machine with_tool = machine;
@@ -30,7 +31,7 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
                                      place.position.begin() + static_cast<std::ptrdiff_t>(machine.axes.size()));
   Deviation deviation;
   Eigen::MatrixXd by_parameters, by_positions;
-  tool_deviation(with_tool, errors, position, deviation, &by_parameters, &by_positions);
+  tool_deviation(with_tool, errors, position, deviation, &by_parameters, &by_positions, given);
   // An axis stands as if half of its reversal value had been commanded besides, in the direction of its approach.
   const std::size_t first = first_reversal(errors);
   for (std::size_t r = 0; r < errors.reversals.size(); ++r) {
@@ -78,7 +79,7 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
     Eigen::Matrix<double, 5, 6> wanted;
     wanted << Eigen::Matrix<double, 3, 6>::Identity(), seen;
     const CompleteOrthogonal solver(wanted * together);
-    if (solver.rank() < together.cols()) return result;
+    if (solver.rank() < std::min(wanted.rows(), together.cols())) return result;
     reached = solver.pseudo_inverse() * wanted;
   } else if (turns.cols() > 0) {
     const CompleteOrthogonal solver(seen * turns);
