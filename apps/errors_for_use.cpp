@@ -5,8 +5,9 @@
 
 namespace abbe {
 
-ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit) {
-  ErrorsFile contents = read_errors(path, machine);
+ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit,
+                               StatesOfErrors states) {
+  ErrorsFile contents = read_errors(path, machine, states);
   require_trusted(contents, path.string(), accept_misfit);
   for (const std::string& reason : contents.distrusted)
     tell("abbe: {}: used although marked as not to be trusted: {}\n", path.string(), reason);

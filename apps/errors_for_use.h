@@ -11,7 +11,8 @@ class Subcommand;
 /// Errors that are going to correct something. Where they are marked and used nevertheless, that is told.
 /// @param accept_misfit  the user's --accept-misfit
 /// @throws InputError as read_errors(), and where they are marked as not to be trusted and nobody has accepted that
-ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit);
+ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit,
+                               StatesOfErrors states = StatesOfErrors::refused);
 
 /// Errors that are only looked at: marks are told, nothing is refused. @throws InputError as read_errors()
 ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine,
