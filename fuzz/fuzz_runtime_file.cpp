@@ -8,7 +8,7 @@
 #include <cstring>
 #include <vector>
 
-#include "abbe/runtime/abbe_runtime.h"
+#include "abbe/runtime/abbe_runtime_states.h"
 #include "abbe/runtime/frozen_layout.h"
 
 namespace {
@@ -19,6 +19,24 @@ void require(bool condition) {
 
 void check(const std::array<double, ABBE_RUNTIME_AXES>& values, int axes) {
   for (int i = 0; i < axes; ++i) require(std::abs(values[static_cast<std::size_t>(i)]) < 1e30);
+}
+
+/// The compensation at some states, all of which it takes.
+void use(const abbe_runtime* runtime);
+
+void use_states(const abbe_runtime* runtime) {
+  abbe_runtime_states* states = nullptr;
+  require(abbe_runtime_states_make(runtime, nullptr, &states) == ABBE_OK);
+  std::array<double, ABBE_RUNTIME_STATES> channels{}, lags{};
+  for (const double value : {20.0, -1e6, 1e300}) {
+    channels.fill(value);
+    require(abbe_runtime_states_advance(states, channels.data(), 1e4) == ABBE_OK);
+    double behind = 0;
+    require(abbe_runtime_states_get(states, channels.data(), lags.data(), nullptr, &behind) == ABBE_OK);
+    require(behind >= 0);
+    use(abbe_runtime_at_states(states));
+  }
+  abbe_runtime_states_free(states);
 }
 
 void use(const abbe_runtime* runtime) {
@@ -63,6 +81,7 @@ int load(const std::vector<unsigned char>& bytes) {
   require((runtime != nullptr) == (result == ABBE_OK));
   require(std::memchr(text, 0, sizeof text) != nullptr);
   if (runtime != nullptr) use(runtime);
+  if (runtime != nullptr && abbe_runtime_channels(runtime) > 0) use_states(runtime);
   abbe_runtime_free(runtime);
   return result;
 }
@@ -83,7 +102,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bytes.resize(size - size % 8);
   std::memcpy(bytes.data(), kMagic, sizeof kMagic);
   std::memcpy(bytes.data() + kByteOrderAt, &kByteOrder, sizeof kByteOrder);
-  const std::uint32_t format = ABBE_RUNTIME_FORMAT;
+  const std::uint32_t format = bytes[kChecksumAt] % 2 == 0 ? kFormatWithStates : kFormatWithoutStates;
   std::memcpy(bytes.data() + kFormatAt, &format, sizeof format);
   const std::uint64_t count = (bytes.size() - kHeaderBytes) / 8;
   std::memcpy(bytes.data() + kCountAt, &count, sizeof count);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
 // Kinematics of any machine file for LinuxCNC, with its errors compensated: a shim around abbe/runtime/abbe_runtime.h.
-// See README.md in this folder. The file is read in rtapi_app_main; nothing else reads, allocates or locks.
+// See README.md in this folder. Files are read in rtapi_app_main; nothing else reads, allocates or locks.
 
 #include <cctype>
 #include <cerrno>
@@ -20,10 +20,7 @@ extern "C" {
 }
 
 #include "abbe/runtime/abbe_runtime.h"
-
-#ifndef ABBEKINS_NAME
-#define ABBEKINS_NAME "abbekins"
-#endif
+#include "abbekins_states.h"
 
 extern "C" {
 MODULE_LICENSE("GPL");
@@ -32,12 +29,43 @@ static char* model = no_text;
 RTAPI_MP_STRING(model, "absolute path of a frozen compensation (*.abbec)");
 static char* coordinates = no_text;
 RTAPI_MP_STRING(coordinates, "names of the axes in the order of joints, such as XYZAC or X,Y,Z,C1,A");
+static char* states = no_text;
+RTAPI_MP_STRING(states, "absolute path of the states that keep-states stores");
+static int states_hours = 24;
+RTAPI_MP_INT(states_hours, "stored states that are older are not used");
 static char default_space[] = "tool";
 static char* space = default_space;
 RTAPI_MP_STRING(space, "tool: world coordinates are those of the tool in the workpiece; axes: they are axis positions");
 }
 
+namespace abbekins {
+
+void complain(const char* what, const char* detail) {
+  rtapi_print_msg(RTAPI_MSG_ERR, ABBEKINS_NAME ": %s%s%s\n", what, detail[0] != 0 ? ": " : "", detail);
+}
+
+unsigned char* read_file(const char* path, size_t& size) {
+  std::FILE* const file = std::fopen(path, "rb");
+  if (file == nullptr) return nullptr;
+  unsigned char* bytes = nullptr;
+  size = 0;
+  if (std::fseek(file, 0, SEEK_END) == 0) {
+    const long length = std::ftell(file);
+    if (length > 0 && length < 64L << 20 && std::fseek(file, 0, SEEK_SET) == 0) {
+      bytes = static_cast<unsigned char*>(std::malloc(static_cast<size_t>(length)));
+      if (bytes != nullptr) size = std::fread(bytes, 1, static_cast<size_t>(length), file);
+    }
+  }
+  std::fclose(file);
+  return bytes;
+}
+
+}  // namespace abbekins
+
 namespace {
+
+using abbekins::complain;
+using abbekins::read_file;
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kLongestPause = 0.005;  // s; after a longer one the ramp goes on as if it had been this long: no jump
@@ -61,6 +89,7 @@ struct Module {
   int component = -1;
   Pins* pins = nullptr;
   abbe_runtime* runtime = nullptr;
+  const abbe_runtime* present = nullptr;  // the same, at the present states
   abbe_runtime_state inverse_state, forward_state;
   int axes = 0;
   bool tool_space = true;
@@ -130,28 +159,6 @@ void report_uncertainty(const double* joints, const double* tool) {
   for (int i = 0; i < module.axes; ++i) nominal[i] = joints[i] - module.inverse_state.correction[i];
   const int result = abbe_runtime_uncertainty(module.runtime, nominal, tool, &uncertainty);
   *module.pins->uncertainty = result >= 0 ? 1e3 * uncertainty : -1;
-}
-
-/// "abbekins: what" on LinuxCNC's own output.
-void complain(const char* what, const char* detail) {
-  rtapi_print_msg(RTAPI_MSG_ERR, ABBEKINS_NAME ": %s%s%s\n", what, detail[0] != 0 ? ": " : "", detail);
-}
-
-/// The whole file, by malloc; null if it cannot be read.
-unsigned char* read_file(const char* path, size_t& size) {
-  std::FILE* const file = std::fopen(path, "rb");
-  if (file == nullptr) return nullptr;
-  unsigned char* bytes = nullptr;
-  size = 0;
-  if (std::fseek(file, 0, SEEK_END) == 0) {
-    const long length = std::ftell(file);
-    if (length > 0 && length < 64L << 20 && std::fseek(file, 0, SEEK_SET) == 0) {
-      bytes = static_cast<unsigned char*>(std::malloc(static_cast<size_t>(length)));
-      if (bytes != nullptr) size = std::fread(bytes, 1, static_cast<size_t>(length), file);
-    }
-  }
-  std::fclose(file);
-  return bytes;
 }
 
 int load_model() {
@@ -325,11 +332,12 @@ int kinematicsForward(const double* joints, EmcPose* world, const KINEMATICS_FOR
   }
   // LinuxCNC calls this once per servo cycle as soon as all joints are homed, before the inverse.
   advance_ramp();
+  abbekins::advance_states();
   current_tool(offset, tool);
   const int result =
       module.tool_space
-          ? abbe_runtime_forward(module.runtime, &module.forward_state, q, tool, module.part, point, words)
-          : abbe_runtime_uncorrect(module.runtime, &module.forward_state, q, tool, module.part, words);
+          ? abbe_runtime_forward(module.present, &module.forward_state, q, tool, module.part, point, words)
+          : abbe_runtime_uncorrect(module.present, &module.forward_state, q, tool, module.part, words);
   report(result, module.forward_state);
   if (result < 0) return -1;
   for (int i = 0; i < module.axes; ++i) {
@@ -354,8 +362,8 @@ int kinematicsInverse(const EmcPose* world, double* joints, const KINEMATICS_INV
   const double point[3] = {pose.tran.x - offset[0], pose.tran.y - offset[1], pose.tran.z - offset[2]};
   const int result =
       module.tool_space
-          ? abbe_runtime_inverse(module.runtime, &module.inverse_state, point, words, tool, module.part, q)
-          : abbe_runtime_correct(module.runtime, &module.inverse_state, words, tool, module.part, q);
+          ? abbe_runtime_inverse(module.present, &module.inverse_state, point, words, tool, module.part, q)
+          : abbe_runtime_correct(module.present, &module.inverse_state, words, tool, module.part, q);
   report(result, module.inverse_state);
   if (result < 0) {
     // LinuxCNC stops then and says no more than that kinematics failed; soon the forward's result is in the pin.
@@ -386,9 +394,12 @@ int rtapi_app_main() {
   int result = load_model();
   if (result == 0) result = prepare_axes();
   if (result == 0) result = make_pins();
+  if (result == 0) result = abbekins::make_states(module.component, module.runtime, states, states_hours);
+  module.present = abbekins::at_states(module.runtime);
   if (result == 0) result = hal_ready(module.component);
   if (result != 0) {
     hal_exit(module.component);
+    abbekins::free_states();
     abbe_runtime_free(module.runtime);
     module.runtime = nullptr;
   }
@@ -397,6 +408,7 @@ int rtapi_app_main() {
 
 void rtapi_app_exit() {
   hal_exit(module.component);
+  abbekins::free_states();
   abbe_runtime_free(module.runtime);
   module.runtime = nullptr;
 }

@@ -27,6 +27,7 @@ namespace {
 struct FreezeArguments {
   std::string machine, errors, output, world = "joints";
   std::vector<double> tool, lengths{0, 300};
+  std::vector<std::string> state_ranges;
   std::optional<double> limit_um;
   double largest_turn_deg = 0.57;
   double leave_out_factor = 0;
@@ -36,7 +37,8 @@ struct FreezeArguments {
 int run_freeze(const FreezeArguments& arguments) {
   FreezeRequest request;
   request.machine = read_machine(arguments.machine);
-  request.errors = read_errors_for_use(arguments.errors, request.machine, arguments.accept_misfit);
+  request.errors =
+      read_errors_for_use(arguments.errors, request.machine, arguments.accept_misfit, StatesOfErrors::allowed);
   request.errors_file = arguments.errors;
   if (arguments.output.empty() && !arguments.dry_run) {
     throw InputError({.field = "-o"}, "missing", "a file for the frozen compensation (*.abbec), or --dry-run");
@@ -49,6 +51,7 @@ int run_freeze(const FreezeArguments& arguments) {
   request.world_zero_at_joints = arguments.world == "joints";
   request.leave_out_factor = arguments.leave_out_factor;
   request.limit_um = arguments.limit_um;
+  request.state_ranges = arguments.state_ranges;
   const FrozenErrors result = freeze_errors(request);
   const bool written = result.refused.empty() && !arguments.dry_run;
   if (written) write_file_atomically(arguments.output, result.bytes());
@@ -69,7 +72,8 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       "The file is for the C interface abbe/runtime/abbe_runtime.h and for the LinuxCNC module (docs/runtime.md). It "
       "is\n"
       "tried at thousands of poses before it is written; the printed figures come from there. It does not contain\n"
-      "reversal values: the lines for LinuxCNC's own BACKLASH are printed instead.\n\n"
+      "reversal values: the lines for LinuxCNC's own BACKLASH are printed instead. Errors that depend on states\n"
+      "(temperatures, loads) are compensated with values that the controller gives in every cycle.\n\n"
       "Example:\n"
       "  abbe compensate freeze --machine examples/machines/trunnion-mill.machine.toml --errors "
       "examples/trunnion/table.errors.toml -o "
@@ -88,6 +92,12 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
   command->add_option("--tool-length-mm", arguments->lengths, "Tool lengths that are tried; others are flagged")
       ->expected(2)
       ->capture_default_str();
+  command
+      ->add_option("--state-range", arguments->state_ranges,
+                   "NAME=FROM:TO: values of a measured state, in its unit, for which its errors were identified; "
+                   "others are held at the end and then not compensated (default for temperatures: 5 K below to 10 K "
+                   "above the reference)")
+      ->expected(1, -1);
   command->add_option("--limit-um", arguments->limit_um, "Refuse if the tool would be corrected by more than this");
   command
       ->add_option("--largest-turn-deg", arguments->largest_turn_deg,

@@ -33,6 +33,54 @@ TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
   EXPECT_NE(again.out.find("largest correction of the tool: "), std::string::npos);
 }
 
+TEST_F(CompensateFreezeTest, TakesErrorsThatDependOnStates) {
+  const std::string mill = (folder.path() / "warm.machine.toml").string();
+  const std::string warm = (folder.path() / "warm.errors.toml").string();
+  std::ofstream(mill) << "name = \"warm mill\"\nchain = \"w X' Y' b Z t\"\n"
+                         "[axis.X]\ntravel_mm = [0, 500]\n[axis.Y]\ntravel_mm = [0, 400]\n"
+                         "[axis.Z]\ntravel_mm = [-300, 0]\n[tool]\nreference_mm = [0, 0, 500]\n"
+                         "[state.ambient]\nkind = \"measured\"\nunit = \"degC\"\n"
+                         "[state.column]\nkind = \"lag\"\nof = \"ambient\"\ntime_constant_s = 1800\n"
+                         "[state.load]\nkind = \"measured\"\nunit = \"kg\"\n";
+  std::ofstream(warm) << "[[motion]]\nname = \"EXX\"\nstate = \"ambient\"\nbasis = \"legendre\"\norder = 1\n"
+                         "coefficients_um = [1, 2]\n"
+                         "[[location]]\nname = \"EC0Y\"\nstate = \"column\"\nvalue_urad = 3\n"
+                         "[[motion]]\nname = \"EZZ\"\nstate = \"load\"\nbasis = \"legendre\"\norder = 0\n"
+                         "coefficients_um = [0.1]\n";
+  const auto freeze = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"compensate", "freeze",  "--machine", mill,  "--errors",
+                                   warm,         "--force", "-o",        output};
+    words.insert(words.end(), more.begin(), more.end());
+    return abbe(words);
+  };
+  const CommandResult without = freeze({});
+  EXPECT_EQ(without.exit_code, bad_input);
+  EXPECT_NE(without.err.find("--state-range load=FROM:TO"), std::string::npos) << without.err;
+  const CommandResult result = freeze({"--state-range", "ambient=16:28", "load=0:200", "--json"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["format"], 3);
+  ASSERT_EQ(json["states"].size(), 2U);
+  EXPECT_EQ(json["states"][0]["name"], "ambient");
+  EXPECT_EQ(json["states"][0]["range"], (std::vector<double>{16, 28}));
+  // 8 K times 3 um per K of EXX at the end, and times 3 urad per K over 400 mm of EC0Y.
+  EXPECT_NEAR(json["states"][0]["largest_um"].get<double>(), 8 * (3 + 1.2), 0.05);
+  EXPECT_LT(json["accuracy_mm"].get<double>(), 1e-9);
+  const CommandResult text = freeze({"--state-range", "ambient=16:28", "load=0:200"});
+  EXPECT_NE(text.out.find("  state ambient: 16 to 28 degC, reference 20; moves the tool by up to "), std::string::npos);
+  const CommandResult checked = abbe({"check", output});
+  EXPECT_EQ(checked.exit_code, done) << checked.err;
+  EXPECT_NE(checked.out.find("  state column: lag of ambient, 1800 s\n"), std::string::npos) << checked.out;
+  for (const std::string& wrong : {"cold=1:2", "ambient=28:16", "ambient=16", "ambient", "column=16:28", "load=x:2"}) {
+    const CommandResult refused = freeze({"--state-range", wrong});
+    EXPECT_EQ(refused.exit_code, bad_input) << wrong;
+    EXPECT_NE(refused.err.find("--state-range: "), std::string::npos) << refused.err;
+  }
+  const CommandResult left_out = freeze({"--state-range", "load=0:200", "--leave-out-below-uncertainty", "1"});
+  EXPECT_EQ(left_out.exit_code, bad_input);
+  EXPECT_NE(left_out.err.find("EXX*ambient"), std::string::npos) << left_out.err;
+}
+
 TEST_F(CompensateFreezeTest, AnArmIsRefusedAsNothingIsKnownOfWhatRemains) {
   const std::string arm = (folder.path() / "arm.machine.toml").string();
   const std::string arm_errors = (folder.path() / "arm.errors.toml").string();

@@ -61,15 +61,16 @@ def copy_display_modules(folder):
         shutil.copy(HERE / name, folder)
 
 
-def configure(folder, display, kinematics, joints, job, recorded, settings=()):
+def configure(folder, display, kinematics, joints, job, recorded, settings=(), lines=()):
     """The files of a run.
 
     @param kinematics  the module and its parameters
     @param recorded    for each recorder the pins that it records
+    @param lines       further lines of the HAL file, once the module is loaded
     @param job         for the display: "module" and what it needs besides
     """
     module = kinematics.split()[0]
-    lines = [f"setp {module}.{setting}" for setting in settings]
+    lines = [*lines, *(f"setp {module}.{setting}" for setting in settings)]
     lines += [f"net tool-{axis} motion.tooloffset.{axis} => {module}.tooloffset-{axis}" for axis in "xyz"]
     (folder / "job.json").write_text(json.dumps(job))
     copy_display_modules(folder)

@@ -33,6 +33,7 @@
 //
 // runtime holds what a controller runs, and what makes its file:
 //   abbe_runtime.h                      the C interface: joints from points and from nominal joints, and back
+//   abbe_runtime_states.h               compensation that depends on channels such as temperatures; C99
 //   freeze.h                            C++: a machine and its errors compiled into a file, tried all over the travel
 
 /* Compensation in real time: a C interface (C99 and later) over a frozen compensation, docs/runtime.md.
@@ -56,7 +57,7 @@ extern "C" {
 
 enum {
   ABBE_RUNTIME_AXES = 16,       /**< no machine has more axes */
-  ABBE_RUNTIME_FORMAT = 2,      /**< version of the file format */
+  ABBE_RUNTIME_FORMAT = 3,      /**< newest version of the file format; without states a file has version 2 */
   ABBE_RUNTIME_ITERATIONS = 40, /**< no call takes more */
   ABBE_RUNTIME_TEXT = 64
 };
@@ -73,12 +74,14 @@ enum {
   ABBE_OUTSIDE_TRAVEL = 0x200, /**< a joint lies beyond its travel; it is given as it is */
   ABBE_OUTSIDE_TOOL = 0x400,   /**< the tool is shorter or longer than the file was checked for */
 
-  ABBE_NOT_FINITE = -1,    /**< an input is no number, or a length beyond 1e6 mm, an angle beyond 1e6 rad */
-  ABBE_NOT_CONVERGED = -2, /**< not solved within ABBE_RUNTIME_ITERATIONS */
-  ABBE_NOT_POSSIBLE = -3,  /**< the machine has no three linear axes to take a point; abbe_runtime_correct() works */
-  ABBE_SINGULAR = -4,      /**< the linear axes lie in one plane in this pose */
-  ABBE_NULL = -5,          /**< a pointer is null */
-  ABBE_NOT_STATED = -6,    /**< the errors that were frozen had no uncertainties */
+  ABBE_NOT_FINITE = -1,       /**< an input is no number, or a length beyond 1e6 mm, an angle beyond 1e6 rad */
+  ABBE_NOT_CONVERGED = -2,    /**< not solved within ABBE_RUNTIME_ITERATIONS */
+  ABBE_NOT_POSSIBLE = -3,     /**< the machine has no three linear axes to take a point; abbe_runtime_correct() works */
+  ABBE_SINGULAR = -4,         /**< the linear axes lie in one plane in this pose */
+  ABBE_NULL = -5,             /**< a pointer is null */
+  ABBE_NOT_STATED = -6,       /**< the errors that were frozen had no uncertainties */
+  ABBE_STATES_NOT_GIVEN = -7, /**< errors depend on channels: use abbe_runtime_at_states(), abbe_runtime_states.h */
+  ABBE_STALE = -8,            /**< stored states are too old, or from the future */
 
   ABBE_FILE_SHORT = -10,    /**< fewer bytes than a header, or than the header says */
   ABBE_FILE_FOREIGN = -11,  /**< no frozen compensation */

@@ -13,6 +13,15 @@
 
 namespace abbe {
 
+/// Values of a measured state for which errors are frozen, in its unit.
+struct StateRange {
+  double from = 0, to = 0;  ///< both 0: not stated
+};
+
+/// Range of a temperature that is not stated: from so much below its reference to so much above it, K. Other states
+/// must have one.
+inline constexpr double kDefaultBelow = -5, kDefaultAbove = 10;
+
 struct FreezeOptions {
   Eigen::Vector3d tool = Eigen::Vector3d::Zero();     ///< mm; default tool, functional point from the gauge point
   double tool_length_min = 0, tool_length_max = 300;  ///< mm, against the tool direction: checked, flagged beyond
@@ -26,14 +35,22 @@ struct FreezeOptions {
   Eigen::MatrixXd covariance;
   /// Of the machine, where those that are frozen leave some out: what remains is judged by them.
   std::optional<ErrorSet> all_errors;
-  std::string source;   ///< machine and errors as text, whose checksum the file keeps
-  std::string version;  ///< of the program
+  std::vector<StateRange> state_ranges;  ///< [states of the machine] of measured ones; or empty: none is stated
+  std::string source;                    ///< machine and errors as text, whose checksum the file keeps
+  std::string version;                   ///< of the program
 };
 
 /// A frozen compensation and what was found by trying it against the full model at poses all over travel and map.
 struct FrozenCompensation {
   std::string problem;  ///< why it cannot be frozen; empty if it can
   std::vector<unsigned char> bytes;
+  int format = 0;  ///< of the bytes: 2, or 3 with states
+  struct Channel {
+    std::size_t state = 0;  ///< measured state of the machine
+    StateRange range;
+    double largest = 0;  ///< mm by which the tool point moves if it goes from its reference to the far end of the range
+  };
+  std::vector<Channel> channels;  ///< that a controller has to give, in the order of the file
   std::uint64_t checksum = 0, source_checksum = 0;
   double largest_correction = 0;       ///< mm, of the tool point: actual against nominal at the same commands
   double largest_correction_turn = 0;  ///< rad, of the tool direction

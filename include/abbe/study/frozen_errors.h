@@ -33,6 +33,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "abbe/compensate/left_out_errors.h"
 #include "abbe/errors/error_set.h"
@@ -57,7 +58,9 @@ struct FreezeRequest {
   double largest_turn = 0.57 * kDegree;  ///< --largest-turn-deg: of all rotary axes together; at most 10 degrees
   bool world_zero_at_joints = true;      ///< --world: as FreezeOptions
   double leave_out_factor = 0;           ///< --leave-out-below-uncertainty: 0 to 1000; 0: none is left out
-  std::optional<double> limit_um;        ///< --limit-um: larger corrections of the tool are refused; above zero
+  /// --state-range: "NAME=FROM:TO" of measured states, in their unit; FreezeOptions::state_ranges
+  std::vector<std::string> state_ranges;
+  std::optional<double> limit_um;  ///< --limit-um: larger corrections of the tool are refused; above zero
 };
 
 /// Frozen errors, and what was found by trying them. They need nothing of the request that they answer.

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "abbe/runtime/abbe_runtime.h"
+#include "abbe/runtime/abbe_runtime_states.h"
 
 namespace abbe {
 
@@ -13,7 +13,9 @@ namespace abbe {
 struct CheckedFrozenFile {
   std::string file;  ///< its name, for texts
   abbe_runtime_information about{};
-  std::vector<abbe_runtime_axis> axes;  ///< chain order
+  std::vector<abbe_runtime_axis> axes;         ///< chain order
+  std::vector<abbe_runtime_channel> channels;  ///< that a controller has to give
+  std::vector<abbe_runtime_lag> lags;
 };
 
 /// Loads a frozen compensation as a controller does. Opens no file.

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "abbe/formats/files/text_file.h"
-#include "abbe/runtime/abbe_runtime.h"
+#include "abbe/runtime/abbe_runtime_states.h"
 #include "abbe/study/frozen_errors.h"
 #include "bindings/use/arguments.h"
 
@@ -35,6 +35,10 @@ Compensation load(std::string bytes, const std::string& file) {
     throw InputError({.file = file}, why.data(), "a whole file of abbe.freeze(), of this version");
   }
   result.runtime.reset(handle);
+  if (abbe_runtime_channels(handle) > 0) {
+    throw InputError({.field = "bytes", .file = file}, "the errors depend on states, which this class does not take",
+                     "a compensation whose errors have no measured states");
+  }
   abbe_runtime_describe(handle, &result.about);
   result.bytes = std::move(bytes);
   return result;

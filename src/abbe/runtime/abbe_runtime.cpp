@@ -94,6 +94,7 @@ void keep(const abbe_runtime& machine, const FrozenCommands& nominal, const Froz
 /// Nominal joints to actual ones.
 int compensate(const abbe_runtime& machine, abbe_runtime_state* state, const FrozenCommands& nominal,
                const NominalView& view, const Triple& goal, const Triple& tool, double enable, double* joints) {
+  if (enable > 0 && machine.needs_states) return ABBE_STATES_NOT_GIVEN;
   FrozenCommands actual = enable > 0 ? started(machine, state, nominal, 1) : nominal;
   FrozenResult found;
   if (enable > 0) found = solve_actual(machine, nominal, view, goal, tool, enable, actual);
@@ -131,6 +132,7 @@ int uncompensate(const abbe_runtime& machine, abbe_runtime_state* state, const F
     keep(machine, nominal, actual, 0, state);
     return flags(machine, nominal, actual, tool, enable);
   }
+  if (machine.needs_states) return ABBE_STATES_NOT_GIVEN;
   nominal = started(machine, state, actual, -1);
   const FrozenResult found = solve_nominal(machine, actual, tool, enable, nominal, point);
   if (found.result < 0) return found.result;
@@ -249,6 +251,10 @@ const char* abbe_runtime_text(int result) ABBE_NOEXCEPT {
       return "a pointer is null or an axis does not exist";
     case ABBE_NOT_STATED:
       return "the errors that were frozen had no uncertainties";
+    case ABBE_STATES_NOT_GIVEN:
+      return "the errors depend on states, which are not given";
+    case ABBE_STALE:
+      return "the stored states are too old or from the future";
     case ABBE_FILE_SHORT:
       return "the file is truncated";
     case ABBE_FILE_LONG:

@@ -5,11 +5,11 @@
 #include <cstring>
 
 #include "abbe/errors/calibrated_machine.h"
-#include "abbe/errors/error_states.h"
 #include "abbe/machine/inverse_plan.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/runtime/abbe_runtime.h"
 #include "abbe/runtime/freeze_check.h"
+#include "abbe/runtime/freeze_states.h"
 #include "abbe/runtime/freeze_uncertainty.h"
 #include "abbe/runtime/frozen_functions.h"
 #include "abbe/runtime/frozen_layout.h"
@@ -45,6 +45,7 @@ class Writer {
     value(static_cast<double>(list.size()));
     for (std::size_t k = 0; k < 3; ++k) value(k < list.size() ? static_cast<double>(list[k]) : 0);
   }
+  void all(const std::vector<double>& values) { values_.insert(values_.end(), values.begin(), values.end()); }
   const std::vector<double>& values() const { return values_; }
 
  private:
@@ -52,19 +53,6 @@ class Writer {
 };
 
 double limited(double value) { return std::clamp(value, -frozen::kLongest, frozen::kLongest); }
-
-/// Positions between which all error motions of an axis are known.
-std::array<double, 2> map_of(const ErrorSet& errors, std::size_t axis) {
-  std::array<double, 2> map{-frozen::kLongest, frozen::kLongest};
-  for (const ErrorMotion& motion : errors.motions) {
-    const Basis& basis = motion.basis;
-    if (motion.axis != axis || (basis.covers(basis.from - 1e5) && basis.covers(basis.to + 1e5))) continue;
-    const double spare = 1e-9 * (basis.to - basis.from);
-    map[0] = std::max(map[0], basis.from - spare);
-    map[1] = std::min(map[1], basis.to + spare);
-  }
-  return map;
-}
 
 void write_machine(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options, std::size_t groups,
                    Writer& out) {
@@ -117,25 +105,6 @@ void write_axis(const Machine& machine, const ErrorSet& errors, const Calibrated
   out.value(limited(axis.travel_max));
 }
 
-void write_functions(const FrozenFunctions& functions, Writer& out) {
-  const std::size_t per_function = functions.kind == 2 ? 4 : 1;
-  out.value(static_cast<double>(functions.axis));
-  out.value(functions.kind);
-  const std::size_t count = functions.rows.size() / per_function;
-  out.value(static_cast<double>(count));
-  out.flag(functions.everywhere);
-  out.value(functions.lowest);
-  out.value(functions.highest);
-  out.value(functions.first);
-  out.value(functions.second);
-  if (functions.kind == 2) {
-    for (const double node : functions.nodes) out.value(node);
-  }
-  for (const std::array<double, 6>& row : functions.rows) {
-    for (const double coefficient : row) out.value(coefficient);
-  }
-}
-
 void write_uncertainty(const UncertaintyLattice& lattice, Writer& out) {
   out.value(static_cast<double>(lattice.dimensions.size()));
   out.value(lattice.largest);
@@ -161,12 +130,12 @@ void put_text(std::vector<unsigned char>& bytes, std::size_t place, std::size_t 
 }
 
 std::vector<unsigned char> file_of(const Machine& machine, const FreezeOptions& options,
-                                   const std::vector<double>& values) {
+                                   const std::vector<double>& values, int format) {
   using namespace frozen;
   std::vector<unsigned char> bytes(kHeaderBytes + 8 * values.size(), 0);
   std::memcpy(bytes.data(), kMagic, sizeof kMagic);
   put(bytes, kByteOrderAt, kByteOrder);
-  put(bytes, kFormatAt, std::uint32_t{ABBE_RUNTIME_FORMAT});
+  put(bytes, kFormatAt, static_cast<std::uint32_t>(format));
   put(bytes, kCountAt, std::uint64_t{values.size()});
   put(bytes, kSourceAt, crc(reinterpret_cast<const unsigned char*>(options.source.data()), options.source.size()));
   put_text(bytes, kVersionAt, kVersionBytes, options.version);
@@ -176,12 +145,35 @@ std::vector<unsigned char> file_of(const Machine& machine, const FreezeOptions& 
   return bytes;
 }
 
+/// Channels, and what each does to the tool point at the far end of its range, by itself and by its lags: the sum over
+/// all factors that it is part of, others at the far end of theirs.
+void state_channels(const Machine& machine, const FrozenStatePlan& plan, const std::vector<double>& largest,
+                    FrozenCompensation& result) {
+  const auto farthest = [&](std::size_t state) {
+    if (state == kNoState) return 1.0;
+    const StateRange& range = plan.ranges[state];
+    const double reference = machine.states[state].reference;
+    return std::max(std::abs(range.from - reference), std::abs(range.to - reference));
+  };
+  const auto channel_of = [&](std::size_t state) {
+    return state != kNoState && machine.states[state].kind == StateKind::lag ? machine.states[state].first : state;
+  };
+  for (const std::size_t state : plan.states) {
+    if (machine.states[state].kind != StateKind::measured) continue;
+    FrozenCompensation::Channel channel{state, plan.ranges[state], 0};
+    for (std::size_t j = 0; j < plan.factors.size(); ++j) {
+      const FrozenStatePlan::Product& factor = plan.factors[j];
+      if (channel_of(factor.first) != state && channel_of(factor.second) != state) continue;
+      channel.largest += largest[j] * farthest(factor.first) * farthest(factor.second);
+    }
+    result.channels.push_back(channel);
+  }
+}
+
 std::string problem_of(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options) {
   const std::vector<MachineProblem> problems = find_problems(machine);
   if (!problems.empty()) return problems.front().text();
   if (machine.axes.size() > ABBE_RUNTIME_AXES) return "more than 16 axes";
-  const std::string stated = first_error_with_state(machine, errors);
-  if (!stated.empty()) return stated + " depends on a state, which a frozen compensation does not know";
   if (errors.composition.first_order) return "the errors are composed to first order only, to reproduce a paper";
   const auto parameters = static_cast<Eigen::Index>(errors.parameter_count());
   if (options.covariance.rows() != 0 &&
@@ -198,27 +190,38 @@ FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const 
   FrozenCompensation result;
   result.problem = problem_of(machine, errors, options);
   if (!result.problem.empty()) return result;
-  const std::vector<FrozenFunctions> functions = frozen_functions(machine, errors, result.problem);
+  const FrozenStatePlan plan = plan_states(machine, errors, options, result.problem);
+  if (!result.problem.empty()) return result;
+  constexpr std::size_t kNone = FrozenStatePlan::kNone;
+  const std::vector<FrozenFunctions> functions =
+      frozen_functions(machine, motions_of(plan, errors, kNone, kNone), result.problem);
   if (!result.problem.empty()) return result;
   Writer out;
   write_machine(machine, errors, options, functions.size(), out);
-  const CalibratedMachine calibrated = calibrated_machine(machine, errors);
+  const CalibratedMachine calibrated = calibrated_machine(machine, constant_locations(errors));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) write_axis(machine, errors, calibrated, i, out);
-  for (const FrozenFunctions& group : functions) write_functions(group, out);
-  const UncertaintyLattice uncertainty = uncertainty_lattice(machine, errors, options);
+  for (const FrozenFunctions& group : functions) out.all(group_values(group));
+  if (plan.any()) {
+    const std::vector<double> largest = largest_per_unit(machine, errors, plan, options);
+    out.all(state_values(machine, errors, plan, functions, largest, result.problem));
+    if (!result.problem.empty()) return result;
+    state_channels(machine, plan, largest, result);
+  }
+  result.format = static_cast<int>(plan.any() ? frozen::kFormatWithStates : frozen::kFormatWithoutStates);
+  const UncertaintyLattice uncertainty = uncertainty_lattice(machine, errors, options, corners(machine, plan));
   write_uncertainty(uncertainty, out);
   result.largest_uncertainty = uncertainty.largest;
   result.mean_uncertainty = uncertainty.mean;
   result.uncertainty_lattice = uncertainty.interpolation;
   std::vector<double> values = out.values();
-  result.bytes = file_of(machine, options, values);
-  survey_corrections(machine, errors, options, result);
+  result.bytes = file_of(machine, options, values, result.format);
+  survey_corrections(machine, errors, options, plan, result);
   // Before the file is tried: near singularities the calls go by them.
   values[frozen::kLargestCorrection] = result.largest_correction;
   values[frozen::kLargestCorrection + 1] = result.largest_correction_turn;
   if (result.problem.empty()) {
-    result.bytes = file_of(machine, options, values);
-    freeze_check(machine, errors, options, result);
+    result.bytes = file_of(machine, options, values, result.format);
+    freeze_check(machine, errors, options, plan, result);
   }
   if (!result.problem.empty()) {
     result.bytes.clear();
@@ -227,7 +230,7 @@ FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const 
   values[frozen::kAccuracy] = result.accuracy;
   values[frozen::kAccuracy + 1] = result.accuracy_turn;
   values[frozen::kWorstIterations] = result.worst_iterations;
-  result.bytes = file_of(machine, options, values);
+  result.bytes = file_of(machine, options, values, result.format);
   std::memcpy(&result.checksum, result.bytes.data() + frozen::kChecksumAt, sizeof result.checksum);
   std::memcpy(&result.source_checksum, result.bytes.data() + frozen::kSourceAt, sizeof result.source_checksum);
   return result;

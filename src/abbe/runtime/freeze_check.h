@@ -1,18 +1,30 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <vector>
+
 #include "abbe/runtime/freeze.h"
+#include "abbe/runtime/freeze_states.h"
 
 namespace abbe {
 
-/// Largest corrections at poses all over travel and map and at three tool lengths, and uphill from there:
-/// FrozenCompensation's largest_correction, with where, and largest_correction_turn; or a problem. The bytes are read
-/// for the ranges alone.
+/// Positions between which all error motions of an axis are known.
+std::array<double, 2> map_of(const ErrorSet& errors, std::size_t axis);
+
+/// How far the tool point moves at most per unit of each given factor, over the poses and tools that are tried and
+/// uphill from there; mm, [factors].
+std::vector<double> largest_per_unit(const Machine& machine, const ErrorSet& errors, const FrozenStatePlan& plan,
+                                     const FreezeOptions& options);
+
+/// Largest corrections at poses and states all over travel, map and ranges and at three tool lengths, and uphill from
+/// there: FrozenCompensation's largest_correction, with where, and largest_correction_turn.
 void survey_corrections(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
-                        FrozenCompensation& result);
+                        const FrozenStatePlan& plan, FrozenCompensation& result);
 
 /// Loads the bytes of a frozen compensation, largest corrections included, and compares its calls with the full model
-/// at the same poses; fills in what else FrozenCompensation says of them, or a problem.
+/// at the same poses and states; fills in what else FrozenCompensation says of them, or a problem.
 void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
-                  FrozenCompensation& result);
+                  const FrozenStatePlan& plan, FrozenCompensation& result);
 
 }  // namespace abbe

@@ -16,6 +16,8 @@ using Dimension = FrozenUncertainty::Dimension;
 
 /// Poses and tools at which the file has the uncertainty, at most.
 constexpr std::size_t kNodes = 20000;
+/// With states, evaluations at most.
+constexpr std::size_t kEvaluations = 160000;
 static_assert(kNodes <= FrozenUncertainty::kMostNodes, "what is written is read again");
 static_assert(std::size_t{1} << FrozenUncertainty::kMostDimensions <= kNodes, "two nodes of each dimension have room");
 
@@ -46,23 +48,28 @@ Dimension dimension_of(const Machine& machine, const ErrorSet& errors, std::size
 
 class PointUncertainty {
  public:
-  PointUncertainty(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options)
-      : machine_(machine), errors_(errors), covariance_(options.covariance) {
+  PointUncertainty(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
+                   const std::vector<std::vector<double>>& corners)
+      : machine_(machine), errors_(errors), covariance_(options.covariance), corners_(corners) {
     machine_.tool_offset.setZero();
   }
 
   /// For several tools along the tool direction at one pose.
   void at(const std::vector<double>& position, const std::vector<double>& lengths, std::vector<double>& result) {
-    tool_deviation(machine_, errors_, position, deviation_, &by_parameters_);
-    const Eigen::Matrix<double, 6, 6> spread = by_parameters_ * covariance_ * by_parameters_.transpose();
-    const Eigen::Vector3d tool = nominal_workpiece_from_tool(machine_, position).rotation * machine_.tool_direction;
-    for (const double length : lengths) {
-      // The point lies against the tool direction from the gauge point; small turns move it by their cross product.
-      Eigen::Matrix<double, 3, 6> moves;
-      moves << Eigen::Matrix3d::Identity(), skew(length * tool);
-      const Eigen::Matrix3d point = moves * spread * moves.transpose();
-      const SymmetricEigen<3> solver(point, Eigen::EigenvaluesOnly);
-      result.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[2])));
+    const std::size_t before = result.size();
+    result.resize(before + lengths.size(), 0.0);
+    for (const std::vector<double>& given : corners_) {
+      tool_deviation(machine_, errors_, position, deviation_, &by_parameters_, nullptr, given);
+      const Eigen::Matrix<double, 6, 6> spread = by_parameters_ * covariance_ * by_parameters_.transpose();
+      const Eigen::Vector3d tool = nominal_workpiece_from_tool(machine_, position).rotation * machine_.tool_direction;
+      for (std::size_t k = 0; k < lengths.size(); ++k) {
+        // The point lies against the tool direction from the gauge point; small turns move it by their cross product.
+        Eigen::Matrix<double, 3, 6> moves;
+        moves << Eigen::Matrix3d::Identity(), skew(lengths[k] * tool);
+        const Eigen::Matrix3d point = moves * spread * moves.transpose();
+        const SymmetricEigen<3> solver(point, Eigen::EigenvaluesOnly);
+        result[before + k] = std::max(result[before + k], std::sqrt(std::max(0.0, solver.eigenvalues()[2])));
+      }
     }
   }
 
@@ -70,6 +77,7 @@ class PointUncertainty {
   Machine machine_;
   const ErrorSet& errors_;
   const Eigen::MatrixXd& covariance_;
+  const std::vector<std::vector<double>>& corners_;
   Deviation deviation_;
   Eigen::MatrixXd by_parameters_;
 };
@@ -79,7 +87,9 @@ double node(const Dimension& d, std::size_t i) {
 }
 
 /// @param axes  [axes] from end to end of all axes
-std::vector<Dimension> choose_dimensions(const std::vector<Dimension>& axes, const FreezeOptions& options) {
+/// @param most  nodes
+std::vector<Dimension> choose_dimensions(const std::vector<Dimension>& axes, const FreezeOptions& options,
+                                         std::size_t most) {
   std::vector<Dimension> dimensions;
   for (const Dimension& d : axes) {
     if (d.to - d.from > 1e-6) dimensions.push_back(d);
@@ -94,7 +104,7 @@ std::vector<Dimension> choose_dimensions(const std::vector<Dimension>& axes, con
     for (const Dimension& d : dimensions) product *= d.nodes;
     return product;
   };
-  while (nodes() > kNodes) {
+  while (nodes() > most) {
     const auto largest = std::max_element(dimensions.begin(), dimensions.end(),
                                           [](const Dimension& a, const Dimension& b) { return a.nodes < b.nodes; });
     --largest->nodes;
@@ -104,18 +114,19 @@ std::vector<Dimension> choose_dimensions(const std::vector<Dimension>& axes, con
 
 }  // namespace
 
-UncertaintyLattice uncertainty_lattice(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options) {
+UncertaintyLattice uncertainty_lattice(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
+                                       const std::vector<std::vector<double>>& corners) {
   UncertaintyLattice lattice;
-  if (options.covariance.rows() == 0 || options.covariance.isZero(0)) return lattice;
+  if (corners.empty() || options.covariance.rows() == 0 || options.covariance.isZero(0)) return lattice;
   std::vector<Dimension> axes;
   std::vector<double> position;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axes.push_back(dimension_of(machine, errors, i));
     position.push_back(0.5 * (axes[i].from + axes[i].to));
   }
-  lattice.dimensions = choose_dimensions(axes, options);
+  lattice.dimensions = choose_dimensions(axes, options, std::min(kNodes, kEvaluations / corners.size()));
   const std::vector<Dimension>& dimensions = lattice.dimensions;
-  PointUncertainty uncertainty(machine, errors, options);
+  PointUncertainty uncertainty(machine, errors, options, corners);
 
   const bool has_lengths = dimensions.back().axis == FrozenUncertainty::kToolLength;
   std::vector<double> lengths;

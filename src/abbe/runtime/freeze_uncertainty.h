@@ -23,6 +23,8 @@ struct UncertaintyLattice {
 /// Tools lie along the tool direction of the machine; axes go from end to end of travel and map. Machines of more axes
 /// than the lattice has dimensions leave out those nearest the workpiece, which stand in the middle of their travel.
 /// Source: JCGM 102:2011, 6.2.
-UncertaintyLattice uncertainty_lattice(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options);
+/// @param corners  values of given states (corners() of freeze_states.h), of which the largest uncertainty counts
+UncertaintyLattice uncertainty_lattice(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
+                                       const std::vector<std::vector<double>>& corners);
 
 }  // namespace abbe

@@ -10,6 +10,8 @@
 
 #include "abbe/runtime/frozen_layout.h"
 #include "abbe/runtime/frozen_pose.h"
+#include "abbe/runtime/frozen_states.h"
+#include "abbe/runtime/frozen_values.h"
 
 namespace abbe {
 namespace frozen {
@@ -49,60 +51,6 @@ std::uint64_t crc(const unsigned char* bytes, std::size_t size) {
 }  // namespace frozen
 
 namespace {
-
-template <typename T>
-T read_at(const unsigned char* bytes, std::size_t place) {
-  T value;
-  std::memcpy(&value, bytes + place, sizeof value);
-  return value;
-}
-
-/// Values of a file in order. The first one that is not usable ends it; what follows reads as zero.
-class Values {
- public:
-  Values(const unsigned char* bytes, std::size_t count) : bytes_(bytes), count_(count) {}
-
-  double number(double least, double most, std::string_view field) {
-    if (next_ >= count_) fail(field);
-    if (!ok()) return 0;
-    const double value = read_at<double>(bytes_, 8 * next_++);
-    if (value >= least && value <= most) return value;  // false for what is no number
-    fail(field);
-    return 0;
-  }
-  std::size_t whole(std::size_t most, std::string_view field) {
-    const double value = number(0, static_cast<double>(most), field);
-    if (value != std::floor(value)) fail(field);
-    return ok() ? static_cast<std::size_t>(value) : 0;
-  }
-  bool flag(std::string_view field) { return whole(1, field) != 0; }
-  double length(std::string_view field) { return number(-frozen::kLongest, frozen::kLongest, field); }
-  Triple triple(std::string_view field) {
-    const double x = length(field), y = length(field), z = length(field);
-    return {x, y, z};
-  }
-  Triple unit(std::string_view field) {
-    const Triple u = triple(field);
-    require(std::abs(dot(u, u) - 1) < 1e-9, field);
-    return u;
-  }
-  void require(bool condition, std::string_view field) {
-    if (!condition) fail(field);
-  }
-  void fail(std::string_view field) {
-    if (ok()) field_ = field;
-  }
-  bool ok() const { return field_.empty(); }
-  std::string_view field() const { return field_; }
-  bool at_end() const { return next_ == count_; }
-  void skip(std::size_t values) { next_ += values; }
-  std::size_t left() const { return next_ < count_ ? count_ - next_ : 0; }
-
- private:
-  const unsigned char* bytes_;
-  std::size_t count_, next_ = 0;
-  std::string_view field_;
-};
 
 FrozenChoice read_choice(Values& values, std::size_t axes, std::string_view field) {
   FrozenChoice choice;
@@ -178,9 +126,6 @@ void read_axis(Values& values, FrozenAxis& axis) {
   axis.travel_max = values.length("travel");
 }
 
-/// Numbers per function in the file, and in memory.
-std::size_t rows(FrozenGroup::Kind kind) { return kind == FrozenGroup::Kind::piecewise_cubic ? 4 : 1; }
-
 void read_parameters(Values& values, FrozenGroup& group, double first, double second) {
   switch (group.kind) {
     case FrozenGroup::Kind::chebyshev:
@@ -226,6 +171,8 @@ void read_nodes(Values& values, FrozenGroup& group, double* nodes) {
   group.per_spacing = even ? 1 / spacing : 0;
 }
 
+}  // namespace
+
 void read_group(Values& values, const abbe_runtime& m, FrozenGroup& group, std::size_t& axis, double*& room) {
   axis = values.whole(m.axes - 1, "axis of a group");
   group.kind = static_cast<FrozenGroup::Kind>(values.whole(2, "kind of a group"));
@@ -239,7 +186,7 @@ void read_group(Values& values, const abbe_runtime& m, FrozenGroup& group, std::
   const double first = values.number(-frozen::kLongest, frozen::kLongest, "range of a group");
   const double second = values.number(-frozen::kLongest, frozen::kLongest, "range of a group");
   read_parameters(values, group, first, second);
-  const std::size_t nodes = piecewise ? group.functions + 1 : 0, all = group.functions * rows(group.kind);
+  const std::size_t nodes = piecewise ? group.functions + 1 : 0, all = group_rows(group);
   if (!values.ok() || values.left() < nodes + 6 * all) {
     values.fail("size of a group");
     return;
@@ -260,6 +207,8 @@ void read_group(Values& values, const abbe_runtime& m, FrozenGroup& group, std::
       room[c] = values.number(-frozen::kLargestError, frozen::kLargestError, "coefficients of a group");
   }
 }
+
+namespace {
 
 void read_uncertainty(Values& values, abbe_runtime& m, double* room) {
   FrozenUncertainty& u = m.uncertainty;
@@ -332,7 +281,8 @@ FrozenFile read_frozen(const unsigned char* bytes, std::size_t size, abbe_runtim
   if (size < kHeaderBytes) return {ABBE_FILE_SHORT, {}};
   const std::uint32_t order = read_at<std::uint32_t>(bytes, kByteOrderAt);
   if (order != kByteOrder) return {order == 0x0d0c0b0aU ? ABBE_FILE_ORDER : ABBE_FILE_FOREIGN, {}};
-  if (read_at<std::uint32_t>(bytes, kFormatAt) != ABBE_RUNTIME_FORMAT) return {ABBE_FILE_VERSION, {}};
+  const std::uint32_t format = read_at<std::uint32_t>(bytes, kFormatAt);
+  if (format != kFormatWithStates && format != kFormatWithoutStates) return {ABBE_FILE_VERSION, {}};
   const std::uint64_t count = read_at<std::uint64_t>(bytes, kCountAt);
   const std::size_t present = (size - kHeaderBytes) / 8;
   if (count > present) return {ABBE_FILE_SHORT, {}};
@@ -340,14 +290,15 @@ FrozenFile read_frozen(const unsigned char* bytes, std::size_t size, abbe_runtim
   const std::uint64_t sum = read_at<std::uint64_t>(bytes, kChecksumAt);
   if (checksum(bytes, size) != sum) return {ABBE_FILE_CHECKSUM, {}};
 
-  // Room for machine, groups, nodes and coefficients in one piece.
+  // Room for machine, groups, states, nodes and coefficients in one piece.
   constexpr std::size_t kGroupsAt = (sizeof(abbe_runtime) + 63) / 64 * 64;
-  constexpr std::size_t kRoomAt = kGroupsAt + (kMostGroups * sizeof(FrozenGroup) + 63) / 64 * 64;
-  void* const memory = std::malloc(kRoomAt + 8 * (count + 1));
+  constexpr std::size_t kStatesAt = kGroupsAt + (kMostGroups * sizeof(FrozenGroup) + 63) / 64 * 64;
+  const std::size_t room_at = kStatesAt + (format == kFormatWithStates ? (sizeof(FrozenStates) + 63) / 64 * 64 : 0);
+  void* const memory = std::malloc(room_at + 8 * (count + 1));
   if (memory == nullptr) return {ABBE_FILE_NO_MEMORY, {}};
   abbe_runtime& m = *new (memory) abbe_runtime;
   FrozenGroup* const group = reinterpret_cast<FrozenGroup*>(static_cast<unsigned char*>(memory) + kGroupsAt);
-  double* room = reinterpret_cast<double*>(static_cast<unsigned char*>(memory) + kRoomAt);
+  double* room = reinterpret_cast<double*>(static_cast<unsigned char*>(memory) + room_at);
   m.group = group;
 
   Values values(bytes + kHeaderBytes, static_cast<std::size_t>(count));
@@ -363,6 +314,8 @@ FrozenFile read_frozen(const unsigned char* bytes, std::size_t size, abbe_runtim
     before = axis;
     if (m.axis[axis].groups++ == 0) m.axis[axis].first_group = g;
   }
+  if (values.ok() && format == kFormatWithStates)
+    read_states(values, m, *new (static_cast<unsigned char*>(memory) + kStatesAt) FrozenStates, group, groups, room);
   if (values.ok()) read_uncertainty(values, m, room);
   values.require(values.at_end(), "number of values");
   if (!values.ok()) {

@@ -90,6 +90,21 @@ enum DimensionValue : std::size_t {
   kDimensionValues = 5
 };
 
+// Format 3, between the groups and the uncertainty: states, and errors that depend on them. Numbers of items stand
+// before them; 16 is no factor.
+//   states: kind (0 measured, 1 lag, 2 axis, 3 gravity), axis or state of the channel, unit, reference, time constant,
+//           range, 32 letters; gravity: loads (axis, weight, point)
+//   factors that are given: first and second state, mm per unit; factors of the pose: the same
+//   groups with a factor of the pose: its number, then as a group
+//   blocks, in the order of the groups: group, given factor, coefficients
+//   location errors, in the order of the axes: axis, given factor, factor of the pose, shift, tilt, zero position
+inline constexpr std::uint32_t kFormatWithStates = 3;
+inline constexpr std::uint32_t kFormatWithoutStates = 2;
+inline constexpr std::size_t kStateName = 32;
+inline constexpr std::size_t kMostLoads = 64;
+inline constexpr std::size_t kMostBlocks = 256;
+inline constexpr std::size_t kMostLocations = 128;
+
 inline constexpr std::size_t kMostFunctions = 64;    // of a Chebyshev or Fourier group
 inline constexpr std::size_t kMostIntervals = 4096;  // of a piecewise group
 inline constexpr std::size_t kMostGroups = 96;

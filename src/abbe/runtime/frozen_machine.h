@@ -71,6 +71,9 @@ struct FrozenAxis {
   static constexpr std::size_t kNotSolved = 3;
 };
 
+struct FrozenStates;
+struct FrozenPosed;
+
 /// Axes that together do one thing.
 struct FrozenChoice {
   std::size_t count = 0;
@@ -101,4 +104,7 @@ struct abbe_runtime {
   abbe::Triple workpiece_from_bed_shift{};
   abbe::FrozenUncertainty uncertainty;
   abbe_runtime_information information{};
+  const abbe::FrozenStates* states = nullptr;  ///< null: no error depends on one
+  const abbe::FrozenPosed* posed = nullptr;    ///< null: no error has a factor that is computed at the pose
+  bool needs_states = false;                   ///< errors depend on given states, which have not been put in
 };

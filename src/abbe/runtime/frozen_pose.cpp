@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "abbe/runtime/frozen_states.h"
+
 namespace abbe {
 namespace {
 
@@ -140,12 +142,12 @@ double place_in(const FrozenGroup& group, const FrozenCommands& commands, std::s
   return in_period + commands.by[i];
 }
 
-/// Sum of all error motions of one axis.
-SixErrors axis_errors(const abbe_runtime& machine, std::size_t i, const FrozenCommands& commands) {
-  const FrozenAxis& axis = machine.axis[i];
+/// Sum of some groups of error motions of one axis.
+SixErrors group_errors(const FrozenGroup* groups, std::size_t first, std::size_t count, std::size_t i,
+                       const FrozenCommands& commands) {
   SixErrors errors;
-  for (std::size_t g = axis.first_group; g < axis.first_group + axis.groups; ++g) {
-    const FrozenGroup& group = machine.group[g];
+  for (std::size_t g = first; g < first + count; ++g) {
+    const FrozenGroup& group = groups[g];
     const double q = place_in(group, commands, i);
     switch (group.kind) {
       case FrozenGroup::Kind::chebyshev:
@@ -162,12 +164,37 @@ SixErrors axis_errors(const abbe_runtime& machine, std::size_t i, const FrozenCo
   return errors;
 }
 
+/// Error motions with a factor of the pose.
+void add_posed_errors(const FrozenPosed& posed, const double* factors, std::size_t i, const FrozenCommands& commands,
+                      SixErrors& sum) {
+  const FrozenStates& states = *posed.states;
+  const std::size_t first = states.first_group[i];
+  for (std::size_t g = first; g < first + states.of_axis[i]; ++g) {
+    const SixErrors one = group_errors(posed.group, g, 1, i, commands);
+    const double factor = factors[states.pose_of[g]];
+    sum.xy += factor * one.xy;
+    sum.za += factor * one.za;
+    sum.bc += factor * one.bc;
+  }
+}
+
+/// An axis whose line moves with the pose.
+void place_line(const FrozenPosed& posed, const double* factors, std::size_t i, FrozenAxis& axis) {
+  const FrozenStates& states = *posed.states;
+  LineErrors line = posed.line[i];
+  for (std::size_t k = 0; k < states.locations; ++k) {
+    const FrozenLocation& location = states.location[k];
+    if (location.axis == i && location.pose != kNoFactor) line.add(factors[location.pose], posed.location[k]);
+  }
+  displace(line, axis);
+}
+
 /// Point and direction carried by one axis: those of the tool side towards the bed, then away from it on the
 /// workpiece side.
-PointAndDirection carried(const abbe_runtime& machine, std::size_t i, const FrozenCommands& commands, double enable,
-                          PointAndDirection v) {
-  const FrozenAxis& axis = machine.axis[i];
-  const SixErrors e = axis_errors(machine, i, commands);
+/// @param axis  of the machine, its line where it is
+/// @param e     its error motions
+PointAndDirection carried(const FrozenAxis& axis, const SixErrors& e, std::size_t i, const FrozenCommands& commands,
+                          double enable, PointAndDirection v) {
   const SmallRotation error{turn_of(enable * e.za[1]), turn_of(enable * e.bc[0]), turn_of(enable * e.bc[1])};
   const Triple shifted = axis.point + enable * Triple{e.xy[0], e.xy[1], e.za[0]};
   const Line line = line_of(axis, commands.at(i), commands.turn[i], enable);
@@ -184,6 +211,27 @@ PointAndDirection carried(const abbe_runtime& machine, std::size_t i, const Froz
   };
   if (axis.tool_side) return axis.error_first ? by_error(by_motion(1, v)) : by_motion(1, by_error(v));
   return axis.error_first ? by_motion(-1, back_by_error(v)) : back_by_error(by_motion(-1, v));
+}
+
+/// The whole chain of a machine with errors whose factors are computed at the pose.
+PointAndDirection carried_at_pose(const abbe_runtime& machine, const FrozenCommands& commands, double enable,
+                                  PointAndDirection at) {
+  const FrozenPosed& posed = *machine.posed;
+  double factors[kFrozenStates];
+  pose_factors(machine, *posed.states, commands, factors);
+  for (std::size_t i = machine.axes; i-- > 0;) {
+    const FrozenAxis& axis = machine.axis[i];
+    SixErrors errors = group_errors(machine.group, axis.first_group, axis.groups, i, commands);
+    add_posed_errors(posed, factors, i, commands, errors);
+    if (posed.states->located[i]) {
+      FrozenAxis placed = axis;
+      place_line(posed, factors, i, placed);
+      at = carried(placed, errors, i, commands, enable, at);
+    } else {
+      at = carried(axis, errors, i, commands, enable, at);
+    }
+  }
+  return at;
 }
 
 }  // namespace
@@ -251,8 +299,14 @@ ActualTool actual_tool(const abbe_runtime& machine, const FrozenCommands& comman
   const Triple& direction = machine.tool_direction;
   PointAndDirection at{{start.x, direction.x}, {start.y, direction.y}, {start.z, direction.z}};
   // The chain from the tool on: tool-side axes carry towards the bed, workpiece-side axes are left behind.
-  for (std::size_t i = machine.axes; i-- > 0;) {
-    at = carried(machine, i, commands, enable, at);
+  if (machine.posed == nullptr) {
+    for (std::size_t i = machine.axes; i-- > 0;) {
+      const FrozenAxis& axis = machine.axis[i];
+      at = carried(axis, group_errors(machine.group, axis.first_group, axis.groups, i, commands), i, commands, enable,
+                   at);
+    }
+  } else {
+    at = carried_at_pose(machine, commands, enable, at);
   }
   return {machine.workpiece_from_bed * Triple{at.x[0], at.y[0], at.z[0]} + machine.workpiece_from_bed_shift,
           machine.workpiece_from_bed * Triple{at.x[1], at.y[1], at.z[1]}};

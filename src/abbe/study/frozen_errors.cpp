@@ -8,6 +8,7 @@
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
 #include "abbe/machine/position_words.h"
 #include "abbe/report/version.h"
 
@@ -33,7 +34,31 @@ FreezeOptions freeze_options(const FreezeRequest& request) {
   options.covariance = parameter_covariance(request.errors.errors, request.errors.covariance);
   options.source = machine_text(request.machine) + errors_text(request.machine, request.errors);
   options.version = version_text();
+  options.state_ranges = parse_state_ranges(request.machine, request.state_ranges);
   return options;
+}
+
+/// "ambient=15:30": the measured states of these names.
+std::vector<StateRange> parse_state_ranges(const Machine& machine, const std::vector<std::string>& texts) {
+  std::vector<StateRange> ranges(machine.states.size());
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
+    const std::string name = text.substr(0, equals);
+    const std::size_t state = find_state(machine, name);
+    if (state == kNoState || machine.states[state].kind != StateKind::measured) {
+      throw InputError({.field = "--state-range"}, fmt::format("'{}' is no measured state of the machine", name),
+                       "NAME=FROM:TO, such as ambient_temperature=15:30");
+    }
+    StateRange& range = ranges[state];
+    const std::string unit = machine.states[state].unit;
+    if (colon == std::string::npos ||
+        parse_number(text.substr(equals + 1, colon - equals - 1), 0, range.from) != NumberProblem::none ||
+        parse_number(text.substr(colon + 1), 0, range.to) != NumberProblem::none || !(range.from < range.to)) {
+      throw InputError({.field = "--state-range"}, fmt::format("'{}' is no range", text),
+                       fmt::format("{}=FROM:TO{}, the lower end first", name, unit == "1" ? "" : " in " + unit));
+    }
+  }
+  return ranges;
 }
 
 /// Why no pose was compensated, and what can be done.
@@ -59,7 +84,9 @@ std::string nothing_reached(const FrozenCompensation& frozen) {
 }  // namespace
 
 FrozenErrors freeze_errors(const FreezeRequest& request) {
-  refuse_states(request.machine, request.errors.errors, "a frozen compensation");
+  if (request.leave_out_factor > 0) {
+    refuse_states(request.machine, request.errors.errors, "--leave-out-below-uncertainty");
+  }
   check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   FreezeOptions options = freeze_options(request);

@@ -10,7 +10,6 @@
 #include "abbe/report/evaluations/position_json.h"
 #include "abbe/report/version.h"
 #include "abbe/report/words/left_out_words.h"
-#include "abbe/runtime/abbe_runtime.h"
 #include "abbe/study/frozen_errors.h"
 
 namespace abbe {
@@ -38,8 +37,7 @@ std::string frozen_errors_text(const FrozenErrors& result, const FrozenOutput& f
                       file.written   ? file.file
                       : file.dry_run ? "dry run, nothing written"
                                      : "nothing written",
-                      frozen.bytes.size(), static_cast<int>(ABBE_RUNTIME_FORMAT), version_text(), frozen.checksum,
-                      frozen.source_checksum);
+                      frozen.bytes.size(), frozen.format, version_text(), frozen.checksum, frozen.source_checksum);
   text += fmt::format("  tried at {} poses, tools of {:g} to {:g} mm\n", frozen.poses, result.tool_length_min,
                       result.tool_length_max);
   text +=
@@ -65,6 +63,12 @@ std::string frozen_errors_text(const FrozenErrors& result, const FrozenOutput& f
     text += "  standard uncertainty of the tool's correction: not stated by the errors file\n";
   }
   if (result.leave_out_factor > 0) text += left_out_text(machine, result.leave_out_factor, result.left_out, "  ");
+  for (const FrozenCompensation::Channel& channel : frozen.channels) {
+    const MachineState& state = machine.states[channel.state];
+    const std::string unit = state.unit == "1" ? "" : " " + state.unit;
+    text += fmt::format("  state {}: {:g} to {:g}{}, reference {:g}; moves the tool by up to {:.1f} um from there\n",
+                        state.name, channel.range.from, channel.range.to, unit, state.reference, 1e3 * channel.largest);
+  }
   text += fmt::format("  iterations of one call: at most {}\n", frozen.worst_iterations);
   if (frozen.limited > 0)
     text += fmt::format("  near singularities the turn is bounded: at {} poses a part of the orientation error stays\n",
@@ -84,7 +88,7 @@ nlohmann::ordered_json frozen_errors_json(const FrozenErrors& result, const Froz
   json["output"] = file.file;
   json["written"] = file.written;
   json["bytes"] = frozen.bytes.size();
-  json["format"] = static_cast<int>(ABBE_RUNTIME_FORMAT);
+  json["format"] = frozen.format;
   json["version"] = version_text();
   json["checksum"] = fmt::format("{:016x}", frozen.checksum);
   json["source_checksum"] = fmt::format("{:016x}", frozen.source_checksum);
@@ -113,6 +117,14 @@ nlohmann::ordered_json frozen_errors_json(const FrozenErrors& result, const Froz
     json["standard_uncertainty_in_file_to_um"] = 1e3 * frozen.uncertainty_lattice;
   }
   state_left_out(machine, result.left_out, json);
+  for (const FrozenCompensation::Channel& channel : frozen.channels) {
+    const MachineState& state = machine.states[channel.state];
+    json["states"].push_back({{"name", state.name},
+                              {"unit", state.unit},
+                              {"reference", state.reference},
+                              {"range", {channel.range.from, channel.range.to}},
+                              {"largest_um", 1e3 * channel.largest}});
+  }
   json["backlash"] = nlohmann::ordered_json::array();
   for (const JointBacklash& one : linuxcnc_backlash(machine, result.errors)) {
     json["backlash"].push_back({{"axis", one.axis},

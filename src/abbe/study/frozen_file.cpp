@@ -46,6 +46,12 @@ CheckedFrozenFile check_frozen_file(std::string_view bytes, const std::string& f
   for (int i = 0; i < frozen.about.axes; ++i) {
     abbe_runtime_describe_axis(runtime.get(), i, &frozen.axes[static_cast<std::size_t>(i)]);
   }
+  frozen.channels.resize(static_cast<std::size_t>(abbe_runtime_channels(runtime.get())));
+  for (std::size_t c = 0; c < frozen.channels.size(); ++c)
+    abbe_runtime_describe_channel(runtime.get(), static_cast<int>(c), &frozen.channels[c]);
+  frozen.lags.resize(static_cast<std::size_t>(abbe_runtime_lags(runtime.get())));
+  for (std::size_t k = 0; k < frozen.lags.size(); ++k)
+    abbe_runtime_describe_lag(runtime.get(), static_cast<int>(k), &frozen.lags[k]);
   return frozen;
 }
 
@@ -68,6 +74,15 @@ std::string frozen_file_text(const CheckedFrozenFile& frozen) {
                       about.tool_length_max, about.tool[0], about.tool[1], about.tool[2]);
   text += fmt::format("  largest correction of the tool {:.1f} um, of its direction {:.1f} urad\n",
                       1e3 * about.largest_correction_mm, 1e6 * about.largest_correction_rad);
+  for (const abbe_runtime_channel& channel : frozen.channels) {
+    text +=
+        fmt::format("  state {}: {:g} to {:g}{}, reference {:g}\n", channel.name, channel.range_min, channel.range_max,
+                    std::string_view(channel.unit) == "1" ? "" : fmt::format(" {}", channel.unit), channel.reference);
+  }
+  for (const abbe_runtime_lag& lag : frozen.lags) {
+    text += fmt::format("  state {}: lag of {}, {:g} s\n", lag.name,
+                        frozen.channels[static_cast<std::size_t>(lag.channel)].name, lag.time_constant_s);
+  }
   if (about.has_uncertainty != 0) {
     text += fmt::format("  standard uncertainty of the tool's correction: {:.2f} um on average, at most {:.2f} um\n",
                         1e3 * about.mean_uncertainty_mm, 1e3 * about.largest_uncertainty_mm);
@@ -94,6 +109,17 @@ nlohmann::ordered_json frozen_file_json(const CheckedFrozenFile& frozen) {
   if (about.has_uncertainty != 0) {
     json["standard_uncertainty_um"] = {{"mean", 1e3 * about.mean_uncertainty_mm},
                                        {"largest", 1e3 * about.largest_uncertainty_mm}};
+  }
+  for (const abbe_runtime_channel& channel : frozen.channels) {
+    json["states"].push_back({{"name", channel.name},
+                              {"unit", channel.unit},
+                              {"reference", channel.reference},
+                              {"range", {channel.range_min, channel.range_max}}});
+  }
+  for (const abbe_runtime_lag& lag : frozen.lags) {
+    json["lags"].push_back({{"name", lag.name},
+                            {"of", frozen.channels[static_cast<std::size_t>(lag.channel)].name},
+                            {"time_constant_s", lag.time_constant_s}});
   }
   return json;
 }
