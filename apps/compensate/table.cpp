@@ -31,7 +31,7 @@ namespace {
 
 struct TableCommand {
   std::string machine, errors, format, output, map;
-  std::vector<std::string> at, axes, names, reference_position;
+  std::vector<std::string> at, axes, names, reference_position, states;
   std::optional<double> interpolation_um, limit_um, limit_urad;
   double interpolation_urad = 0.1, times_uncertainty = 0, least_reduction_percent = 1;
   std::optional<std::size_t> max_points, positions;
@@ -102,7 +102,7 @@ int run_table(const TableCommand& command) {
   ControlTableRequest request;
   request.format = command.format;
   request.machine = read_machine(command.machine);
-  const ErrorsFile file = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
+  const ErrorsFile file = read_errors_for_use(command.errors, request.machine, command.accept_misfit, command.states);
   request.errors = file.errors;
   request.errors_file = command.errors;
   request.covariance = file.covariance;
@@ -203,6 +203,7 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_output_file(
       "--map", options->map,
       "Map to write of the displacement without tables, with tables and ideal: .csv, .vts or .vtu");
+  add_states(*command, options->states);
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {

@@ -10,6 +10,7 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/report/words/volumetric_words.h"
 
 namespace abbe {
@@ -66,6 +67,7 @@ std::string table_text(const TableReport& report) {
   for (const std::string& name : made.left_out) text += fmt::format("  left out: {}\n", name);
   for (const std::string& name : made.left_out_kept)
     text += fmt::format("  kept, because not small together with others: {}\n", name);
+  text += state_line(report.partial.at_state);
   text += errors_carried_text(made);
   text += volumetric_text(made.volumetric);
   text += error_line("what these tables leave of it between their nodes", made.left_by_tables);
