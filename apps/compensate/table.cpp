@@ -30,7 +30,7 @@ namespace abbe {
 namespace {
 
 struct TableCommand {
-  std::string machine, errors, format, output, map;
+  std::string machine, errors, format, output, map, over;
   std::vector<std::string> at, axes, names, reference_position, states;
   std::optional<double> interpolation_um, limit_um, limit_urad;
   double interpolation_urad = 0.1, times_uncertainty = 0, least_reduction_percent = 1;
@@ -106,6 +106,10 @@ int run_table(const TableCommand& command) {
   request.errors = file.errors;
   request.errors_file = command.errors;
   request.covariance = file.covariance;
+  if (!command.over.empty()) {
+    request.over_file = command.over;
+    request.over = read_errors_over_time(command.errors, request.machine, command.states, command.over);
+  }
   check_outputs(command);
   if (command.limit_um) request.limit_mm = 1e-3 * *command.limit_um;
   if (command.limit_urad) request.limit_rad = 1e-6 * *command.limit_urad;
@@ -204,6 +208,8 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
       "--map", options->map,
       "Map to write of the displacement without tables, with tables and ideal: .csv, .vts or .vtu");
   add_states(*command, options->states);
+  command->add_input_file("--state-over", options->over,
+                          "Also state what the tables leave at the states of a record (CSV: time_s and states)");
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {

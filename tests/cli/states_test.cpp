@@ -116,6 +116,35 @@ TEST_F(States, UncertaintiesAreThoseOfTheStateToo) {
             1.5 * uncertainty("warm", at));
 }
 
+TEST_F(States, TablesOfOneStateSayWhatTheyLeaveOverADay) {
+  const auto over = [&](const std::string& record) {
+    folder.write("day.csv", record);
+    const CommandResult result = run({"compensate", "table", "--for", "aerotech-2d", "--dry-run", "--json",
+                                      "--positions", "4", "--state-over", "day.csv"},
+                                     "warm", {"--state", "hall_degC=24", "--state", "column_degC=24"});
+    EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  // At the state of the tables it is what they leave anyway; the lag is in equilibrium.
+  const nlohmann::json still = over("time_h,hall_degC\n0,24\n");
+  ASSERT_EQ(still["over_states"]["states"].size(), 1U);
+  EXPECT_EQ(still["over_states"]["maximum_um"], still["volumetric_error_left_by_tables_um"]["max"]);
+  EXPECT_EQ(still["over_states"]["at_state"], still["at_state"]);
+  const nlohmann::json day = over("time_h,hall_degC\n0,24\n10,24\n18,30\n24,24\n");
+  EXPECT_EQ(day["over_states"]["states"].size(), 145U);
+  EXPECT_EQ(day["over_states"]["maximum_at_s"], 18 * 3600);
+  EXPECT_EQ(day["over_states"]["at_state"]["hall_degC"], 30);
+  EXPECT_LT(day["over_states"]["at_state"]["column_degC"], 30);
+  EXPECT_GT(day["over_states"]["maximum_um"].get<double>(),
+            5 + still["volumetric_error_left_by_tables_um"]["max"].get<double>());
+  EXPECT_LT(day["over_states"]["rms_um"].get<double>(), day["over_states"]["maximum_um"].get<double>());
+  folder.write("day.csv", "time_h,hall_degC\n0,24\n1,\n2,25\n");
+  const CommandResult gap = run({"compensate", "table", "--for", "linuxcnc", "--dry-run", "--state-over", "day.csv"},
+                                "warm", {"--state", "hall_degC=24", "--state", "column_degC=24"});
+  EXPECT_EQ(gap.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(gap.err, HasSubstr("day.csv: time: hall is not known at 50 s, in a gap of day.csv"));
+}
+
 TEST_F(States, AVerificationTakesBothFilesAtTheState) {
   const CommandResult warm = run({"verify", "--truth", "warm.errors.toml", "--poses", "50", "--json"}, "warm", at);
   ASSERT_EQ(warm.exit_code, ExitCode::done) << warm.err;

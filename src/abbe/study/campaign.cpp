@@ -150,7 +150,7 @@ InstrumentFile take_readings(const Study& study, const Setup& setup, const std::
                              const InstrumentReadings& readings, const ChannelUse& channels) {
   InstrumentFile file = given_readings(readings, study.machine, device, setup.name, setup.noise_from_data);
   if (channels.from != nullptr) {
-    channels.from->give(study.machine, file.readings.time_s, {setup.name, "time_s", {}}, file.readings.poses,
+    channels.from->give(study.machine, file.readings.time_s, {setup.name, "time_s", {}, "reading"}, file.readings.poses,
                         channels.starts);
   }
   return file;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "abbe/errors/poses.h"
@@ -44,7 +45,9 @@ std::string uncertain_start_words(const Machine& machine, const UncertainStart& 
 struct ReadingRows {
   std::string file;                                    ///< or set-up
   std::string time_column;                             ///< "time_s"
-  std::function<std::size_t(std::size_t row)> line{};  ///< in the file; null: rows are counted from 0
+  std::function<std::size_t(std::size_t row)> line{};  ///< in the file; null: there is none
+  std::string counted{};                               ///< "reading": rows are numbered from 0; empty: they are not
+};                                                     ///< in the file; null: rows are counted from 0
 };
 
 /// Channels of measured states, from any number of files, each with times of its own on one clock.
@@ -53,6 +56,9 @@ class StateChannels {
   bool empty() const { return channels_.empty(); }
   /// Channel of a state, or null.
   const StateChannel* of(std::size_t state) const;
+
+  /// The first and the last time that all channels cover, s; the first is the later one if there is no such time.
+  std::pair<double, double> common_time() const;
 
   /// Adds a file: a column of times and columns of measured and lag states, of which fields may be empty.
   /// @param file  name for messages

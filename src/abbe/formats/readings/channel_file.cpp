@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "abbe/formats/files/text_file.h"
@@ -72,7 +73,7 @@ std::vector<double> values_over(const MachineState& state, const StateChannel& c
       continue;
     }
     const NoValue why = no_value(state, channel, value, time_s[row]);
-    const std::string of_reading = rows.line ? "" : fmt::format("reading {}: ", row);
+    const std::string of_reading = rows.counted.empty() ? "" : fmt::format("{} {}: ", rows.counted, row);
     throw InputError({rows.file, rows.line ? rows.line(row) : 0, 0, rows.time_column}, of_reading + why.problem,
                      why.expected);
   }
@@ -96,6 +97,16 @@ std::string uncertain_start_words(const Machine& machine, const UncertainStart& 
 const StateChannel* StateChannels::of(std::size_t state) const {
   const auto found = channels_.find(state);
   return found == channels_.end() ? nullptr : &found->second;
+}
+
+std::pair<double, double> StateChannels::common_time() const {
+  constexpr double kEver = std::numeric_limits<double>::infinity();
+  std::pair<double, double> common = {-kEver, kEver};
+  for (const auto& [state, channel] : channels_) {
+    common.first = std::max(common.first, channel.time_s.empty() ? kEver : channel.time_s.front());
+    common.second = std::min(common.second, channel.time_s.empty() ? -kEver : channel.time_s.back());
+  }
+  return common;
 }
 
 void StateChannels::add(std::string_view text, const std::string& file, const Machine& machine,
