@@ -47,7 +47,6 @@ struct ReadingRows {
   std::string time_column;                             ///< "time_s"
   std::function<std::size_t(std::size_t row)> line{};  ///< in the file; null: there is none
   std::string counted{};                               ///< "reading": rows are numbered from 0; empty: they are not
-};                                                     ///< in the file; null: rows are counted from 0
 };
 
 /// Channels of measured states, from any number of files, each with times of its own on one clock.
