@@ -1,13 +1,16 @@
 #include "errors_for_use.h"
 
+#include "abbe/formats/machine/state_option.h"
 #include "messages.h"
 #include "options.h"
 
 namespace abbe {
 
 ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit,
-                               StatesOfErrors states) {
-  ErrorsFile contents = read_errors(path, machine, states);
+                               const std::vector<std::string>& states, StatesOfErrors not_given) {
+  ErrorsFile contents = states.empty() && not_given == StatesOfErrors::allowed
+                            ? read_errors(path, machine, not_given)
+                            : read_errors_at(path, machine, states);
   require_trusted(contents, path.string(), accept_misfit);
   for (const std::string& reason : contents.distrusted)
     tell("abbe: {}: used although marked as not to be trusted: {}\n", path.string(), reason);
@@ -23,6 +26,21 @@ ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine
   ErrorsFile contents = read_errors(path, machine, states);
   tell_distrusted(path, contents);
   return contents;
+}
+
+ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine,
+                                const std::vector<std::string>& states) {
+  ErrorsFile contents = read_errors_at(path, machine, states);
+  tell_distrusted(path, contents);
+  return contents;
+}
+
+void add_states(Subcommand& command, std::vector<std::string>& states) {
+  command
+      .add_option("--state", states,
+                  "NAME_unit=value, such as ambient_degC=26.5: take the errors as they are at this value of a measured "
+                  "or lag state; repeatable")
+      ->allow_extra_args(false);
 }
 
 void add_accept_misfit(Subcommand& command, bool& accept_misfit) {

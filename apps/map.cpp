@@ -25,15 +25,16 @@ namespace {
 
 struct MapOptions {
   std::string machine, errors, reference, poses;
-  std::vector<std::string> grid, outputs;
+  std::vector<std::string> grid, outputs, states;
   bool fit_datum = false, keep_datum = false, accept_uncovered = false, json = false;
 };
 
 ErrorsMapRequest request_of_map(const MapOptions& options) {
   ErrorsMapRequest request;
   request.machine = read_machine(options.machine);
-  request.errors = read_errors_and_tell(options.errors, request.machine);
-  if (!options.reference.empty()) request.minus = read_errors_and_tell(options.reference, request.machine);
+  request.errors = read_errors_and_tell(options.errors, request.machine, options.states);
+  if (!options.reference.empty())
+    request.minus = read_errors_and_tell(options.reference, request.machine, options.states);
   request.fit_datum = !options.keep_datum;
   if (!options.poses.empty()) {
     request.poses.emplace();
@@ -79,6 +80,7 @@ void add_map_command(CommandLine& line) {
   add_machine_and_errors(*command, options->machine, options->errors);
   command->add_input_file("--minus", options->reference,
                           "Errors that are corrected (*.errors.toml): adds the error that remains");
+  add_states(*command, options->states);
   command->add_option("--grid", options->grid, "AXIS_unit=from:to:count or AXIS_unit=position; repeat per axis");
   command
       ->add_input_file("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid")

@@ -24,7 +24,7 @@ namespace {
 
 struct PathCommand {
   std::string machine, curve, errors, placement, part, report;
-  std::vector<std::string> hold, start, words, outputs;
+  std::vector<std::string> hold, start, words, outputs, states;
   double feed_mm_per_min = 0, retract_mm = 0, tolerance_um = 0;
   int decimals = 6;
   bool feed_per_minute = false, json = false, accept_misfit = false;
@@ -44,7 +44,7 @@ PathRequest request_of(const PathCommand& command) {
   request.machine = read_machine(command.machine);
   request.errors_file = command.errors;
   if (!command.errors.empty()) {
-    request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
+    request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, command.states);
   }
   request.placement_file = command.placement;
   if (!command.placement.empty()) {
@@ -137,6 +137,7 @@ void add_path_command(CommandLine& line) {
   command->add_input_file("--part", options->part, "Mesh of the workpiece for that page (.stl .ply .obj .step), mm")
       ->needs("--report");
   options->step.add_to(command);
+  add_states(*command, options->states);
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_path(*options); }; });

@@ -71,7 +71,7 @@ VerificationRequest request_of(const VerifyOptions& options) {
 }
 
 /// Options of random poses and test pieces, which readings have no use for.
-constexpr std::array<const char*, 6> kNotWithReadings = {"--machine", "--truth", "--poses",
+constexpr std::array<const char*, 7> kNotWithReadings = {"--machine", "--truth", "--poses",   "--state",
                                                          "--seed",    "--range", "--reach-mm"};
 
 void refuse_beside_readings(const Subcommand& command, const VerifyOptions& options) {
@@ -160,6 +160,7 @@ void add_verify_command(CommandLine& line) {
       "Y_mm, Z_mm, A_deg, C_deg. Method and figures: docs/verify.md.");
   command->add_option("results", options.files.results,
                       "Results folder of abbe run, of a study with simulated readings");
+  add_states(*command, options.files.states);
   add_machine(*command, options.files.machine, "Machine file (default: machine.toml of the results)");
   add_errors(*command, options.files.errors, "Identified errors (default: errors.toml of the results)");
   command->add_input_file("--truth", options.files.truth, "True errors (default: truth.errors.toml of the results)");

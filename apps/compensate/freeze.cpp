@@ -26,6 +26,7 @@ namespace {
 
 struct FreezeArguments {
   std::string machine, errors, output, world = "joints";
+  std::vector<std::string> states;
   std::vector<double> tool, lengths{0, 300};
   std::vector<std::string> state_ranges;
   std::optional<double> limit_um;
@@ -37,8 +38,8 @@ struct FreezeArguments {
 int run_freeze(const FreezeArguments& arguments) {
   FreezeRequest request;
   request.machine = read_machine(arguments.machine);
-  request.errors =
-      read_errors_for_use(arguments.errors, request.machine, arguments.accept_misfit, StatesOfErrors::allowed);
+  request.errors = read_errors_for_use(arguments.errors, request.machine, arguments.accept_misfit, arguments.states,
+                                       StatesOfErrors::allowed);
   request.errors_file = arguments.errors;
   if (arguments.output.empty() && !arguments.dry_run) {
     throw InputError({.field = "-o"}, "missing", "a file for the frozen compensation (*.abbec), or --dry-run");
@@ -110,6 +111,7 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", arguments->leave_out_factor,
                       "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
+  add_states(*command, arguments->states);
   add_accept_misfit(*command, arguments->accept_misfit);
   command->add_flag("--json", arguments->json, "Print JSON for programs");
   command->callback([arguments, &line] { line.run = [arguments] { return run_freeze(*arguments); }; });

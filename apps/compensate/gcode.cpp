@@ -34,8 +34,9 @@ int run_gcode(const GcodeOptions& options) {
   ProgramRequest request;
   request.machine = read_machine(options.machine);
   const Machine& machine = request.machine;
-  const ErrorsFile errors = read_errors_for_use(options.errors, machine, options.accept_misfit);
+  const ErrorsFile errors = read_errors_for_use(options.errors, machine, options.accept_misfit, options.states);
   request.errors = errors.errors;
+  request.at_state = errors.at_state;
   request.covariance = errors.covariance;
   request.program_file = options.program;
   request.errors_file = options.errors;
@@ -145,6 +146,7 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
                       "Give up on a program that takes longer (default: 5, plus 1 for every 10 MB of the program)");
   command->add_flag("--dry-run", options->dry_run,
                     "Report only: the largest corrections and where they are; write nothing");
+  add_states(*command, options->states);
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_gcode(*options); }; });

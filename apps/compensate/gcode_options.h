@@ -19,7 +19,7 @@ struct GcodeOptions {
   std::optional<double> limit_um;
   double dead_band_um = 0;
   double leave_out_factor = 0, largest_turn_deg = 0.5;
-  std::vector<std::string> words, start, allow;
+  std::vector<std::string> words, start, allow, states;
   std::string tool_table, parameters;
   int tool = -1, decimals = 6;
   std::optional<double> max_output_mb, max_minutes;

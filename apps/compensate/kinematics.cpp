@@ -28,6 +28,7 @@ namespace {
 
 struct KinematicsArguments {
   std::string machine, errors, format, output;
+  std::vector<std::string> states;
   std::optional<double> limit_um, limit_urad;
   std::optional<std::size_t> positions;
   std::optional<int> tool_carrier;
@@ -39,7 +40,8 @@ int run_kinematics(const KinematicsArguments& arguments) {
   KinematicValuesRequest request;
   request.format = arguments.format;
   request.machine = read_machine(arguments.machine);
-  const ErrorsFile file = read_errors_for_use(arguments.errors, request.machine, arguments.accept_misfit);
+  const ErrorsFile file =
+      read_errors_for_use(arguments.errors, request.machine, arguments.accept_misfit, arguments.states);
   request.errors = file.errors;
   request.covariance = file.covariance;
   if (arguments.output.empty() && !arguments.dry_run) {
@@ -102,6 +104,7 @@ void add_compensate_kinematics(Subcommand& compensate, CommandLine& line) {
                    "Refuse values that remove less of the displacement than this; 0 writes them anyway")
       ->check(in_range(0.0, 100.0))
       ->capture_default_str();
+  add_states(*command, arguments->states);
   add_accept_misfit(*command, arguments->accept_misfit);
   command->add_flag("--json", arguments->json, "Print JSON for programs");
   command->callback([arguments, &line] { line.run = [arguments] { return run_kinematics(*arguments); }; });

@@ -31,7 +31,7 @@ namespace {
 
 struct PosesCommand {
   std::string machine, errors, poses, output;
-  std::vector<std::string> hold;
+  std::vector<std::string> hold, states;
   std::optional<double> limit_um;
   std::optional<double> largest_turn_deg;
   double leave_out_factor = 0;
@@ -42,7 +42,8 @@ int run_robot_program(const PosesCommand& command, RobotLanguage language) {
   RobotProgramRequest request;
   request.machine_file = command.machine;
   request.machine = read_machine(command.machine);
-  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, StatesOfErrors::allowed);
+  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, command.states,
+                                       StatesOfErrors::allowed);
   request.program = parse_robot_program(read_text_file(command.poses), language, command.poses);
   if (!command.output.empty()) refuse_input_as_output(command.output);
   request.leave_out_factor = command.leave_out_factor;
@@ -67,7 +68,8 @@ int run_poses(const PosesCommand& command) {
   request.machine_file = command.machine;
   request.errors_file = command.errors;
   request.machine = read_machine(command.machine);
-  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, StatesOfErrors::allowed);
+  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, command.states,
+                                       StatesOfErrors::allowed);
   request.poses = read_poses(command.poses, request.machine);
   if (!command.output.empty()) refuse_input_as_output(command.output);
   request.leave_out_factor = command.leave_out_factor;
@@ -123,6 +125,7 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
                       "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
   command->add_flag("--dry-run", options->dry_run,
                     "Report only: the largest corrections and where they are; write nothing");
+  add_states(*command, options->states);
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_poses(*options); }; });

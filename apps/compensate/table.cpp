@@ -30,8 +30,8 @@ namespace abbe {
 namespace {
 
 struct TableCommand {
-  std::string machine, errors, format, output, map;
-  std::vector<std::string> at, axes, names, reference_position;
+  std::string machine, errors, format, output, map, over;
+  std::vector<std::string> at, axes, names, reference_position, states;
   std::optional<double> interpolation_um, limit_um, limit_urad;
   double interpolation_urad = 0.1, times_uncertainty = 0, least_reduction_percent = 1;
   std::optional<std::size_t> max_points, positions;
@@ -102,10 +102,14 @@ int run_table(const TableCommand& command) {
   ControlTableRequest request;
   request.format = command.format;
   request.machine = read_machine(command.machine);
-  const ErrorsFile file = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
+  const ErrorsFile file = read_errors_for_use(command.errors, request.machine, command.accept_misfit, command.states);
   request.errors = file.errors;
   request.errors_file = command.errors;
   request.covariance = file.covariance;
+  if (!command.over.empty()) {
+    request.over_file = command.over;
+    request.over = read_errors_over_time(command.errors, request.machine, command.states, command.over);
+  }
   check_outputs(command);
   if (command.limit_um) request.limit_mm = 1e-3 * *command.limit_um;
   if (command.limit_urad) request.limit_rad = 1e-6 * *command.limit_urad;
@@ -203,6 +207,9 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_output_file(
       "--map", options->map,
       "Map to write of the displacement without tables, with tables and ideal: .csv, .vts or .vtu");
+  add_states(*command, options->states);
+  command->add_input_file("--state-over", options->over,
+                          "Also state what the tables leave at the states of a record (CSV: time_s and states)");
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {

@@ -26,6 +26,7 @@ struct PointsOptions {
   ScannedPointsRequest request;
   std::string machine;
   std::vector<double> zero, beam, range;
+  std::vector<std::string> states;
   ColumnOptions columns;
   bool any_travel = false, json = false, accept_misfit = false, accept_uncovered = false;
 };
@@ -36,7 +37,10 @@ int run_points(const PointsOptions& options) {
   ScannedPointsRequest request = options.request;
   request.machine = read_machine(options.machine);
   if (!request.errors_file.empty()) {
-    request.errors = read_errors_for_use(request.errors_file, request.machine, options.accept_misfit).errors;
+    const ErrorsFile file =
+        read_errors_for_use(request.errors_file, request.machine, options.accept_misfit, options.states);
+    request.errors = file.errors;
+    request.at_state = file.at_state;
   }
   request.scan.mapping = options.columns.mapping();
   request.scan.check_travel = !options.any_travel;
@@ -95,6 +99,7 @@ void add_scan_points(Subcommand& scan, CommandLine& line) {
       ->check(in_range(0, 12));
   command->add_flag("--any-travel", options->any_travel, "Accept positions outside the travel of an axis");
   command->add_option("--threads", options->request.scan.threads, "Threads (0: all)")->check(in_range(0, 64));
+  add_states(*command, options->states);
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
   command->add_flag("--json", options->json, "Print JSON for programs");

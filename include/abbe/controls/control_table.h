@@ -49,6 +49,8 @@
 
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/readings/errors_over_time.h"
 #include "abbe/machine/inverse_plan.h"
 #include "abbe/machine/machine.h"
 #include "abbe/verify/table_loss.h"
@@ -95,8 +97,22 @@ struct ControlTableRequest {
   std::optional<std::size_t> positions;  ///< --positions: per axis of the grid of `poses`; else 9, or 5 above 3 axes
   std::optional<double> limit_mm;        ///< --limit-um: a larger correction is refused; above zero
   std::optional<double> limit_rad;       ///< --limit-urad
+  std::vector<ErrorsAtTime> over;        ///< --state-over: errors of the machine at the states of a record; empty: none
+  std::string over_file;                 ///< its name
   double least_reduction = 0.01;  ///< --least-reduction-percent: share of the error below which tables are refused
   double leave_out_below = 0;     ///< --leave-out-below-uncertainty: standard uncertainties, at most 1000; 0: none
+};
+
+/// What tables that are made at one state leave at the states of a record.
+struct LossOverStates {
+  std::string record;           ///< name of its file
+  std::vector<double> time_s;   ///< [n] of the record
+  std::vector<double> rms;      ///< [n] volumetric error that the tables leave, the datum fitted at each time, mm
+  std::vector<double> maximum;  ///< [n] the same
+  StateValues worst_state;      ///< where the maximum is largest
+
+  std::size_t worst() const;  ///< index of the largest maximum
+  double rms_of_all() const;  ///< over all times and poses, mm
 };
 
 /// A file for the control, not yet written.
@@ -152,8 +168,9 @@ struct ControlTables {
   /// Displacement as the control sees it, no datum fitted, the worse direction of approach: without tables, with them,
   /// and with the best that the axes can do.
   PoseDeviations before, after, ideal;
-  std::size_t ideal_not_reached = 0;  ///< poses whose point the ideal correction does not reach
-  std::vector<CarriedError> errors;   ///< what becomes of every error alone
+  std::size_t ideal_not_reached = 0;          ///< poses whose point the ideal correction does not reach
+  std::optional<LossOverStates> over_states;  ///< where the request has such states
+  std::vector<CarriedError> errors;           ///< what becomes of every error alone
   /// Standard uncertainty of the displacement that is corrected.
   std::optional<SampleStatistics> uncertainty;
   double largest_mm = 0, largest_rad = 0;     ///< sum of corrections of one axis

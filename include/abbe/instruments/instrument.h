@@ -91,7 +91,8 @@ struct InstrumentReadings {
   std::size_t count() const { return item.size(); }
   /// Adds one reading to a plan (nothing measured yet).
   void append(const std::vector<double>& positions, std::size_t on_item, const std::vector<double>& known = {});
-  void append(const InstrumentReadings& more);
+  /// @param same_clock  the times of both count from the same moment; else those of `more` count from the last one
+  void append(const InstrumentReadings& more, bool same_clock = false);
   /// The readings of those indices, in that order.
   InstrumentReadings subset(const std::vector<std::size_t>& readings) const;
 };

@@ -64,6 +64,7 @@ struct CorrectedCommands {
   Machine machine;
   PoseList poses;               ///< of the request
   double leave_out_factor = 0;  ///< of the request
+  StateValues at_state{};       ///< at which the errors are taken
   CorrectedPoses corrected;
   bool has_reversals = false;   ///< the errors have reversal values, which are not in the commands
   std::string refused;          ///< why the commands must not be used, in words; empty: they may

@@ -11,6 +11,7 @@
 #include "abbe/compensate/program/program_correction.h"
 #include "abbe/compensate/program/word_axes.h"
 #include "abbe/errors/error_set.h"
+#include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/nc/nc_program.h"
 #include "abbe/machine/machine.h"
 #include "abbe/report/words/program_words.h"
@@ -26,6 +27,7 @@ struct ProgramRequest {
   ErrorSet errors;
   /// [p, p] of errors.parameters(), or 0 x 0: what the errors state of their standard uncertainties.
   Eigen::MatrixXd covariance;
+  StateValues at_state{};                 ///< at which the errors are taken, for the report
   std::string program_file, errors_file;  ///< names for messages
 
   WordAxes words;                       ///< axes of the program's words

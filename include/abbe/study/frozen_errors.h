@@ -68,6 +68,7 @@ struct FrozenErrors {
   Machine machine;
   std::string errors_file;
   double tool_length_min = 0, tool_length_max = 0, leave_out_factor = 0;  ///< as in the request
+  StateValues at_state{};                                                 ///< at which the errors are taken
   ErrorSet errors;                                                        ///< those that are frozen
   FrozenCompensation frozen;
   LeftOutErrors left_out;

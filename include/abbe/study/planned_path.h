@@ -65,6 +65,7 @@ struct PathRequest {
 struct PlannedPath {
   Machine machine;  ///< calibrated, with the workpiece in place
   std::string curve_file, placement_file;
+  StateValues at_state{};             ///< at which the errors are taken
   std::vector<std::string> warnings;  ///< of the placement
   ToolPath path;
   std::vector<std::vector<double>> commands;  ///< [steps][axes] as the control is to have them, mm or rad

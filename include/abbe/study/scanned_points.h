@@ -35,6 +35,7 @@
 #include <string>
 
 #include "abbe/errors/error_set.h"
+#include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/readings/scan_file.h"
 #include "abbe/instruments/point_scan.h"
 #include "abbe/machine/machine.h"
@@ -49,6 +50,7 @@ namespace abbe {
 struct ScannedPointsRequest {
   Machine machine;          ///< nominal
   ErrorSet errors;          ///< --errors: calibrated axes and all other errors
+  StateValues at_state{};   ///< at which the errors are taken, for texts
   std::string errors_file;  ///< its name for texts; empty: a machine without errors
   std::string readings;     ///< file of axis positions and indications (.csv), of any length
   std::string output;       ///< --output: file of the points (.csv, .ply)
@@ -70,6 +72,7 @@ ProbeBeam probe_beam(const Machine& machine, const Eigen::Vector3d& zero,
 /// What became of the readings. It needs nothing of the request that it answers.
 struct ScannedPoints {
   std::string machine;  ///< its name
+  StateValues at_state{};
   std::string errors_file, output;
   ScanSummary summary;
   std::string refused;  ///< why there is no point at all; empty: there are some

@@ -53,10 +53,11 @@ namespace abbe {
 
 /// Where the files of a verification are; what is empty is the file of that name in the results.
 struct VerificationFiles {
-  std::string results = {};  ///< folder of `abbe run`, of a study with simulated readings; empty: none
-  std::string machine = {};  ///< else machine.toml
-  std::string errors = {};   ///< identified; else errors.toml
-  std::string truth = {};    ///< else truth.errors.toml
+  std::string results = {};              ///< folder of `abbe run`, of a study with simulated readings; empty: none
+  std::string machine = {};              ///< else machine.toml
+  std::string errors = {};               ///< identified; else errors.toml
+  std::string truth = {};                ///< else truth.errors.toml
+  std::vector<std::string> states = {};  ///< --state: at which both errors are taken, as state_options()
 };
 
 /// What the axes were commanded while a program ran.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "abbe/compensate/correction_uncertainty.h"
@@ -126,6 +127,21 @@ std::vector<CarriedError> what_is_carried(const Making& making) {
   });
 }
 
+LossOverStates loss_over_states(const ControlTableRequest& request, const PoseList& poses,
+                                const CommandCorrection& correction) {
+  LossOverStates loss;
+  loss.record = request.over_file;
+  for (const ErrorsAtTime& there : request.over) {
+    refuse_states(request.machine, there.errors, "a table of a control");
+    const SampleStatistics left = volumetric_error_with(request.machine, there.errors, poses, correction);
+    loss.time_s.push_back(there.time_s);
+    loss.rms.push_back(left.rms);
+    loss.maximum.push_back(left.maximum);
+  }
+  loss.worst_state = request.over[loss.worst()].at_state;
+  return loss;
+}
+
 /// Why the tables must not be used.
 void judge(const Making& making, ControlTables& made) {
   const ControlTableRequest& request = making.request;
@@ -148,6 +164,16 @@ void judge(const Making& making, ControlTables& made) {
 
 }  // namespace
 
+std::size_t LossOverStates::worst() const {
+  return static_cast<std::size_t>(std::max_element(maximum.begin(), maximum.end()) - maximum.begin());
+}
+
+double LossOverStates::rms_of_all() const {
+  double sum = 0;
+  for (const double one : rms) sum += one * one / static_cast<double>(rms.size());
+  return std::sqrt(sum);
+}
+
 ControlTables make_control_tables(const ControlTableRequest& request) {
   refuse_states(request.machine, request.errors, "a table of a control");
   const TableFormat& format = table_format(request.format);
@@ -168,6 +194,7 @@ ControlTables make_control_tables(const ControlTableRequest& request) {
   made.before = deviations_with(machine, errors, made.poses, NoCorrection());
   made.after = deviations_with(machine, errors, made.poses, correction);
   made.left_by_tables = volumetric_error_with(machine, errors, made.poses, correction);
+  if (!request.over.empty()) made.over_states = loss_over_states(request, made.poses, correction);
   made.ideal = ideal_deviations(machine, errors, made.poses, made.ideal_not_reached);
   made.errors = what_is_carried(making);
   made.reversals = reversal_notes(machine, making.carried, format, making.writer);

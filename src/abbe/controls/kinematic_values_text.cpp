@@ -8,6 +8,7 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/report/words/volumetric_words.h"
 
 namespace abbe {
@@ -51,6 +52,7 @@ std::string kinematic_values_text(const KinematicValuesReport& report) {
       fmt::format("kinematic values of {} for {}: {}\n", report.machine.name, made.format.name, made.format.what);
   text += fmt::format("convention: {}\n", made.format.convention);
   if (!made.format.unverified.empty()) text += fmt::format("EXPERIMENTAL, not verified: {}\n", made.format.unverified);
+  text += state_line(report.partial.at_state);
   text += "values, nominal and with the location errors:\n";
   for (const KinematicValue& value : made.values) text += value_line(value);
   text +=

@@ -7,9 +7,11 @@
 
 #include "abbe/controls/carried_text.h"
 #include "abbe/controls/table_format.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/report/words/volumetric_words.h"
 
 namespace abbe {
@@ -29,6 +31,29 @@ std::string errors_carried_text(const ControlTables& made) {
   text += fmt::format("  limits of the format: {}\n", made.format->cannot);
   for (const auto& [name, words] : made.reversals) text += fmt::format("  {}: {}\n", name, words);
   return text;
+}
+
+std::string over_states_text(const LossOverStates& over) {
+  const std::size_t worst = over.worst();
+  return fmt::format(
+      "what they leave at {} states of {}: rms {:.3f} um over all; at most {:.3f} um, at {:.6g} s ({})\n",
+      over.time_s.size(), over.record, in_um(over.rms_of_all()), in_um(over.maximum[worst]), over.time_s[worst],
+      over.worst_state.empty() ? "no error depends on a state" : state_words(over.worst_state));
+}
+
+nlohmann::ordered_json over_states_json(const LossOverStates& over) {
+  nlohmann::ordered_json json;
+  json["record"] = over.record;
+  json["rms_um"] = in_um(over.rms_of_all());
+  json["maximum_um"] = in_um(over.maximum[over.worst()]);
+  json["maximum_at_s"] = over.time_s[over.worst()];
+  add_state(over.worst_state, json);
+  json["states"] = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < over.time_s.size(); ++k) {
+    json["states"].push_back(
+        {{"time_s", over.time_s[k]}, {"rms_um", in_um(over.rms[k])}, {"maximum_um", in_um(over.maximum[k])}});
+  }
+  return json;
 }
 
 }  // namespace
@@ -66,9 +91,11 @@ std::string table_text(const TableReport& report) {
   for (const std::string& name : made.left_out) text += fmt::format("  left out: {}\n", name);
   for (const std::string& name : made.left_out_kept)
     text += fmt::format("  kept, because not small together with others: {}\n", name);
+  text += state_line(report.partial.at_state);
   text += errors_carried_text(made);
   text += volumetric_text(made.volumetric);
   text += error_line("what these tables leave of it between their nodes", made.left_by_tables);
+  if (made.over_states) text += over_states_text(*made.over_states);
   text += fmt::format(
       "displacement of the tool at {} poses between the nodes, datum unchanged, worse direction of "
       "approach:\n",
@@ -137,6 +164,7 @@ nlohmann::ordered_json table_json(const TableReport& report) {
   json["poses"] = made.poses.count();
   add_volumetric_figures(made.volumetric, json);
   json["volumetric_error_left_by_tables_um"] = statistics_um(made.left_by_tables);
+  if (made.over_states) json["over_states"] = over_states_json(*made.over_states);
   json["before"] = deviations_json(made.before);
   json["after"] = deviations_json(made.after);
   json["ideal"] = deviations_json(made.ideal);

@@ -63,7 +63,7 @@ void InstrumentReadings::append(const std::vector<double>& positions, std::size_
   for (std::size_t i = 0; i < known.size(); ++i) inputs[i].push_back(known[i]);
 }
 
-void InstrumentReadings::append(const InstrumentReadings& more) {
+void InstrumentReadings::append(const InstrumentReadings& more, bool same_clock) {
   join_labels(point_name, count(), more.point_name, more.count());
   join_poses(poses, more.poses);
   item.insert(item.end(), more.item.begin(), more.item.end());
@@ -71,7 +71,7 @@ void InstrumentReadings::append(const InstrumentReadings& more) {
   append_columns(measured, more.measured);
   append_columns(uncertainty, more.uncertainty);
   append_columns(covariance, more.covariance);
-  const double after = time_s.empty() ? 0 : time_s.back();
+  const double after = same_clock || time_s.empty() ? 0 : time_s.back();
   for (const double time : more.time_s) time_s.push_back(after + time);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "abbe/machine/first_order_lag.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
@@ -163,16 +164,9 @@ std::vector<double> state_factors(const Machine& machine, std::span<const double
 std::vector<double> lagged(std::span<const double> time_s, std::span<const double> value, double time_constant_s) {
   assert(time_s.size() == value.size() && time_constant_s > 0);
   std::vector<double> result(value.begin(), value.end());
-  for (std::size_t k = 1; k < value.size(); ++k) {
-    const double step = time_s[k] - time_s[k - 1];
-    const double change = value[k] - value[k - 1];
-    result[k] = result[k - 1];
-    if (!(step > 0)) continue;  // a jump within no time leaves the lagged value where it is
-    // y - u obeys tau d/dt (y - u) + (y - u) = -tau du/dt: it decays from its value before towards -tau du/dt.
-    const double gone = -std::expm1(-step / time_constant_s);
-    const double before = result[k - 1] - value[k - 1];
-    result[k] = value[k] + before * (1 - gone) - change * (time_constant_s / step) * gone;
-  }
+  if (value.empty()) return result;
+  FirstOrderLag lag(time_constant_s, value.front());
+  for (std::size_t k = 1; k < value.size(); ++k) result[k] = lag.advance(time_s[k] - time_s[k - 1], value[k]);
   return result;
 }
 

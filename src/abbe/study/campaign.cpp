@@ -51,18 +51,45 @@ void require_planned_states(const Machine& machine, const ErrorSet& errors, cons
   const MachineState& state = machine.states[missing];
   throw InputError({.field = setup},
                    fmt::format("the true errors depend on {}, which is not given at all poses", state.name),
-                   fmt::format("poses from a file with a column {}", state_column(state)));
+                   fmt::format("poses from a file with a column {0}, or with time_s and channels that have {0}",
+                               state_column(state)));
+}
+
+/// States of the true errors and of those that are identified: 1 or 0, [states of the machine].
+std::vector<std::uint8_t> states_in_study(const Study& study, const ErrorSet* truth) {
+  ErrorSet errors = truth != nullptr ? *truth : ErrorSet{};
+  if (study.identification) {
+    for (const IdentifiedMotion& one : study.identification->motions) errors.motions.emplace_back().state = one.state;
+    for (const IdentifiedLocation& one : study.identification->locations) {
+      errors.locations.emplace_back().state = one.state;
+    }
+  }
+  return used_states(study.machine, errors);
+}
+
+/// Says where the assumed start of a lag matters to errors that the study is about.
+void warn_of_starts(const Study& study, const ErrorSet* truth, const std::string& setup,
+                    const std::vector<UncertainStart>& starts, std::vector<std::string>& warnings) {
+  const std::vector<std::uint8_t> used = states_in_study(study, truth);
+  for (std::size_t j = 0; j < used.size(); ++j) {
+    const UncertainStart* worst = nullptr;  // of several files the one that begins first
+    for (const UncertainStart& start : starts) {
+      if (start.state != j || used[j] == 0) continue;
+      if (worst == nullptr || start.first_reading_s < worst->first_reading_s) worst = &start;
+    }
+    if (worst != nullptr) warnings.push_back(setup + ": " + uncertain_start_words(study.machine, *worst));
+  }
 }
 
 void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet& truth, const JobOptions& job,
-                    CampaignSetup& result) {
+                    const ChannelUse& channels, CampaignSetup& result) {
   const Setup& setup = study.setups[setup_index];
   RandomStream random(study.seed, kTruthStream + setup_index);
   result.truth = setup.device->truth(random);
   for (std::size_t p = 0; p < setup.plans.size(); ++p) {
     const std::uint64_t seed = plan_seed(study, setup_index, p);
     // Poses are planned with what is known of the set-up, not with what it really is.
-    PlannedReadings planned = planned_readings(study.machine, setup, setup.plans[p], seed);
+    PlannedReadings planned = planned_readings(study.machine, setup, setup.plans[p], seed, channels);
     InstrumentReadings& plan = planned.readings;
     if (approach_matters(study, truth)) plan.poses.approach = approach_in_order(plan.poses);
     require_planned_states(study.machine, truth, plan.poses, setup.name);
@@ -93,14 +120,16 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
       result.outliers.push_back(static_cast<std::uint32_t>(offset) + outlier);
     }
     result.hidden += simulated.hidden;
-    result.readings.append(simulated.readings);
-    result.exact.append(result.truth->simulate(study.machine, truth, plan, options).readings);
+    const bool same_clock = channels.from != nullptr;
+    result.readings.append(simulated.readings, same_clock);
+    result.exact.append(result.truth->simulate(study.machine, truth, plan, options).readings, same_clock);
   }
 }
 
 InstrumentFile read_file(const Study& study, const Setup& setup, const std::shared_ptr<const Instrument>& device,
-                         const SetupData& data) {
+                         const SetupData& data, const ChannelUse& channels) {
   MeasurementOptions options;
+  options.channels = channels;
   options.mapping = data.mapping;
   options.threads = study.threads;
   return instrument_form(setup.instrument)
@@ -116,12 +145,23 @@ bool same_components(const Instrument& a, const Instrument& b) {
                     [](const ReadingComponent& one, const ReadingComponent& other) { return one.name == other.name; });
 }
 
-void read_setup_files(const Study& study, const Setup& setup, const std::stop_token& stop, CampaignSetup& result) {
+/// Readings that somebody has already, with states by their times.
+InstrumentFile take_readings(const Study& study, const Setup& setup, const std::shared_ptr<const Instrument>& device,
+                             const InstrumentReadings& readings, const ChannelUse& channels) {
+  InstrumentFile file = given_readings(readings, study.machine, device, setup.name, setup.noise_from_data);
+  if (channels.from != nullptr) {
+    channels.from->give(study.machine, file.readings.time_s, {setup.name, "time_s", {}, "reading"}, file.readings.poses,
+                        channels.starts);
+  }
+  return file;
+}
+
+void read_setup_files(const Study& study, const Setup& setup, const std::stop_token& stop, const ChannelUse& channels,
+                      CampaignSetup& result) {
   for (const SetupData& data : setup.data) {
     stop_if_asked(stop);
-    InstrumentFile file =
-        data.readings ? given_readings(*data.readings, study.machine, result.device, setup.name, setup.noise_from_data)
-                      : read_file(study, setup, result.device, data);
+    InstrumentFile file = data.readings ? take_readings(study, setup, result.device, *data.readings, channels)
+                                        : read_file(study, setup, result.device, data, channels);
     if (result.readings.count() > 0) {
       const auto refuse = [&](const char* expected) {
         throw InputError({.file = data.file.string()}, "the files of one set-up differ in their columns", expected);
@@ -134,7 +174,7 @@ void read_setup_files(const Study& study, const Setup& setup, const std::stop_to
       }
     }
     result.device = file.device;
-    result.readings.append(file.readings);
+    result.readings.append(file.readings, channels.from != nullptr);
     result.contradictions.insert(result.contradictions.end(), file.contradictions.begin(), file.contradictions.end());
   }
 }
@@ -232,21 +272,13 @@ ErrorSet true_errors(const Study& study) {
 }
 
 bool approach_matters(const Study& study, const ErrorSet& truth) {
-  const auto is_approach = [&](std::size_t state) {
-    return state != kNoState && study.machine.states[state].kind == StateKind::approach;
-  };
   if (!truth.reversals.empty()) return true;
-  const std::vector<std::uint8_t> used = used_states(study.machine, truth);
+  if (study.identification && !study.identification->reversals.empty()) return true;
+  const std::vector<std::uint8_t> used = states_in_study(study, &truth);
   for (std::size_t j = 0; j < used.size(); ++j) {
-    if (used[j] != 0 && is_approach(j)) return true;
+    if (used[j] != 0 && study.machine.states[j].kind == StateKind::approach) return true;
   }
-  if (!study.identification) return false;
-  const IdentificationPlan& plan = *study.identification;
-  return !plan.reversals.empty() || std::any_of(plan.motions.begin(), plan.motions.end(), [&](const auto& one) {
-    return is_approach(one.state);
-  }) || std::any_of(plan.locations.begin(), plan.locations.end(), [&](const auto& one) {
-    return is_approach(one.state);
-  });
+  return false;
 }
 
 Campaign gather_readings(const Study& study, const JobOptions& options) {
@@ -259,11 +291,15 @@ Campaign gather_readings(const Study& study, const JobOptions& options) {
     result.name = setup.name;
     result.instrument = setup.instrument;
     result.device = setup.device;
+    const StateChannels channels = read_channels(study.machine, study.channels, setup.channels);
+    std::vector<UncertainStart> starts;
+    const ChannelUse use = channels.empty() ? ChannelUse{} : ChannelUse{&channels, &starts};
     if (campaign.truth) {
-      simulate_setup(study, i, *campaign.truth, options, result);
+      simulate_setup(study, i, *campaign.truth, options, use, result);
     } else {
-      read_setup_files(study, setup, options.stop, result);
+      read_setup_files(study, setup, options.stop, use, result);
     }
+    warn_of_starts(study, campaign.truth ? &*campaign.truth : nullptr, setup.name, starts, campaign.warnings);
     result.start = result.device;
     if (result.hidden > 0) {
       campaign.notes.push_back(
@@ -283,7 +319,9 @@ InstrumentReadings read_held_out(const Study& study, const Campaign& campaign) {
   SetupData data;
   if (!setup.data.empty()) data.mapping = setup.data.front().mapping;
   data.file = *study.identification->held_out_file;
-  const InstrumentFile file = read_file(study, setup, device, data);  // contradictions: told of what is fitted
+  const StateChannels channels = read_channels(study.machine, study.channels, setup.channels);
+  const ChannelUse use{channels.empty() ? nullptr : &channels, nullptr};
+  const InstrumentFile file = read_file(study, setup, device, data, use);  // contradictions: told of what is fitted
   const std::vector<std::string> known = device->target_names(), named = file.device->target_names();
   if (named.size() > known.size()) {
     const std::string word = device->target_word();

@@ -9,6 +9,7 @@
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/words/corrected_poses_words.h"
+#include "abbe/report/words/state_words.h"
 
 namespace abbe {
 
@@ -26,6 +27,7 @@ CorrectedCommands correct_commands(const CommandsRequest& request) {
   result.machine = request.machine;
   result.poses = request.poses;
   result.leave_out_factor = request.leave_out_factor;
+  result.at_state = request.errors.at_state;
   result.has_reversals = !request.errors.errors.reversals.empty();
   result.corrected = corrected_poses(
       request.machine, request.errors.errors, request.errors.covariance, request.poses,
@@ -48,14 +50,17 @@ std::string corrected_commands_csv(const CorrectedCommands& result) {
 }
 
 std::string corrected_commands_text(const CorrectedCommands& result) {
-  std::string text = poses_text(result.machine, result.poses, result.corrected, result.leave_out_factor);
+  std::string text = state_line(result.at_state);
+  text += poses_text(result.machine, result.poses, result.corrected, result.leave_out_factor);
   if (result.has_reversals) text += "reversal values are not in these commands: a pose has no direction of approach\n";
   return text;
 }
 
 nlohmann::ordered_json corrected_commands_json(const CorrectedCommands& result, const std::string& output,
                                                bool written) {
-  return poses_json(result.machine, result.poses, result.corrected, output, written);
+  nlohmann::ordered_json json = poses_json(result.machine, result.poses, result.corrected, output, written);
+  add_state(result.at_state, json);
+  return json;
 }
 
 }  // namespace abbe

@@ -72,6 +72,7 @@ CorrectedProgram correct_program(const ProgramRequest& request, std::string_view
   const Machine& machine = request.machine;
   const Eigen::MatrixXd covariance = parameter_covariance(request.errors, request.covariance);
   CorrectedProgram result;
+  result.at_state = request.at_state;
   ErrorSet corrected_errors = request.errors;
   if (request.leave_out_factor > 0) {
     result.left_out = leave_out_uncertain(machine, corrected_errors, covariance, request.leave_out_factor);

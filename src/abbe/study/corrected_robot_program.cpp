@@ -291,6 +291,7 @@ class RobotCorrector {
 }  // namespace
 
 CorrectedRobotProgram correct_robot_program(const RobotProgramRequest& request) {
+  refuse_states(request.machine, request.errors.errors, "a correction of robot programs");
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   check_largest_turn(request.largest_turn);
   if (request.leave_out_factor != 0) {

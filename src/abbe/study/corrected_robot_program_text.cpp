@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/machine/axis_unit.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/study/corrected_robot_program.h"
 
 namespace abbe {
@@ -34,6 +35,7 @@ std::string corrected_robot_text(const RobotProgramRequest& request, const Corre
   std::string text = fmt::format("{} program for {}: {} joint positions, {} Cartesian positions\n",
                                  robot_language_name(request.program.language), request.machine.name, joints,
                                  positions.size() - joints);
+  text += state_line(request.errors.at_state);
   const auto place = [&](std::size_t k) { return fmt::format("line {}, {}", positions[k].line, positions[k].name); };
   const std::size_t shifted = largest_of(result, [](const auto& p) { return p.shift; });
   if (shifted != static_cast<std::size_t>(-1)) {
@@ -75,6 +77,7 @@ nlohmann::ordered_json corrected_robot_json(const RobotProgramRequest& request, 
   nlohmann::ordered_json json;
   json["machine"] = request.machine.name;
   json["language"] = robot_language_name(request.program.language);
+  add_state(request.errors.at_state, json);
   json["written"] = written;
   json["refused"] = result.refused;
   json["positions"] = nlohmann::ordered_json::array();

@@ -150,10 +150,12 @@ std::vector<std::string> notes_of(const Study& study, const StudyResult& result)
 std::vector<std::string> files_of(const Study& study, const StudyResult& result) {
   std::vector<std::string> files = {study.machine_file.filename().string()};
   if (result.before) files.push_back(result.before->name);
+  for (const ChannelFile& channel : study.channels.files) files.push_back(channel.file.filename().string());
   for (const Setup& setup : study.setups) {
     for (const SetupData& data : setup.data) {
       if (!data.file.empty()) files.push_back(data.file.filename().string());
     }
+    for (const ChannelFile& channel : setup.channels.files) files.push_back(channel.file.filename().string());
   }
   return files;
 }

@@ -6,6 +6,7 @@
 
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/results.h"
 
@@ -124,6 +125,7 @@ std::string errors_map_text(const ErrorsMap& map) {
   std::string text =
       fmt::format("{} poses of {}{}\n", before.statistics.count, map.machine.name,
                   map.partial.is_partial() ? "; known are " + map.partial.short_words() + " that it can have" : "");
+  text += state_line(map.partial.at_state);
   if (before.statistics.count == 0) return text;
   if (map.figures) {
     text += volumetric_text(*map.figures);

@@ -93,6 +93,7 @@ FrozenErrors freeze_errors(const FreezeRequest& request) {
   FrozenErrors result;
   result.machine = request.machine;
   result.errors_file = request.errors_file;
+  result.at_state = request.errors.at_state;
   result.tool_length_min = request.tool_length_min;
   result.tool_length_max = request.tool_length_max;
   result.leave_out_factor = request.leave_out_factor;

@@ -10,6 +10,7 @@
 #include "abbe/report/evaluations/position_json.h"
 #include "abbe/report/version.h"
 #include "abbe/report/words/left_out_words.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/study/frozen_errors.h"
 
 namespace abbe {
@@ -33,6 +34,7 @@ std::string frozen_errors_text(const FrozenErrors& result, const FrozenOutput& f
   const FrozenCompensation& frozen = result.frozen;
   std::string text;
   text += fmt::format("{}: errors of {} frozen\n", machine.name, result.errors_file);
+  text += state_line(result.at_state);
   text += fmt::format("  {}: {} bytes, format {}, abbe {}, checksum {:016x} (machine and errors {:016x})\n",
                       file.written   ? file.file
                       : file.dry_run ? "dry run, nothing written"
@@ -85,6 +87,7 @@ nlohmann::ordered_json frozen_errors_json(const FrozenErrors& result, const Froz
   nlohmann::ordered_json json;
   json["machine"] = machine.name;
   json["errors"] = result.errors_file;
+  add_state(result.at_state, json);
   json["output"] = file.file;
   json["written"] = file.written;
   json["bytes"] = frozen.bytes.size();

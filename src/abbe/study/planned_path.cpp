@@ -83,6 +83,7 @@ PlannedPath plan_path(const PathRequest& request) {
   PlannedPath result;
   result.machine = calibrated.machine;
   result.curve_file = request.curve_file;
+  if (request.errors) result.at_state = request.errors->at_state;
   result.placement_file = request.placement_file;
   if (request.placement) {
     result.machine = with_workpiece(result.machine, request.placement->placement);

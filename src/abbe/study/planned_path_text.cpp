@@ -4,11 +4,13 @@
 #include <utility>
 
 #include "abbe/formats/files/file_name.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/drawings/surface_picture.h"
 #include "abbe/report/pages/path_page.h"
 #include "abbe/report/words/geometry_facts.h"
 #include "abbe/report/words/path_words.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/study/planned_path.h"
 
 namespace abbe {
@@ -20,15 +22,17 @@ std::string planned_path_file(const PlannedPath& planned, const std::string& nam
     throw InputError({.file = name}, "unknown kind of program file", "a name ending in .ngc, .nc, .tap, .mpf or .csv");
   }
   options.comments.push_back("tool path of " + file_name(planned.curve_file) + " on " + planned.machine.name);
+  if (!planned.at_state.empty()) options.comments.push_back("errors taken at " + state_words(planned.at_state));
   return path_program(planned.machine, planned.path, planned.commands, options);
 }
 
 std::string planned_path_text(const PlannedPath& planned) {
-  return path_text(planned.machine, planned.path, planned.miss);
+  return path_text(planned.machine, planned.path, planned.miss) + state_line(planned.at_state);
 }
 
 nlohmann::ordered_json planned_path_json(const PlannedPath& planned) {
   nlohmann::ordered_json json = path_json(planned.machine, planned.path, planned.miss);
+  add_state(planned.at_state, json);
   if (!planned.warnings.empty()) json["warnings"] = planned.warnings;
   return json;
 }

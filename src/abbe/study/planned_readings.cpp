@@ -37,6 +37,7 @@ struct PlannedTargets {
   std::vector<std::size_t> target, station;  ///< [poses]
   std::vector<std::size_t> row;              ///< [poses] of the file
   PoseList file;                             ///< poses of the file, with their states
+  std::vector<double> time_s;                ///< [poses] or empty
 
   /// Goes through the same poses again, forwards or backwards.
   void repeat(const PlannedTargets& once, bool backwards) {
@@ -55,8 +56,14 @@ struct PlannedTargets {
 
 /// The rows of a file in their order, each with its target, or with all of the plan where the file names none; repeated
 /// as the plan says.
-PlannedTargets planned_targets(const Machine& machine, const Setup& setup, const MeasurementPlan& plan) {
-  PlannedPoses planned = read_planned_poses(plan.file, machine, setup);
+PlannedTargets planned_targets(const Machine& machine, const Setup& setup, const MeasurementPlan& plan,
+                               const ChannelUse& channels) {
+  PlannedPoses planned = read_planned_poses(plan.file, machine, setup, channels);
+  if (!planned.time_s.empty() && plan.repeats > 1) {
+    throw InputError({plan.file.string(), 0, 0, "time"},
+                     fmt::format("the poses are gone through {} times", plan.repeats),
+                     "repeats = 1, and rows with times of their own for each time");
+  }
   PlannedTargets once;
   for (std::size_t k = 0; k < planned.poses.count(); ++k) {
     for (const std::size_t target : planned.target.empty() ? plan.targets : std::vector{planned.target[k]}) {
@@ -68,6 +75,9 @@ PlannedTargets planned_targets(const Machine& machine, const Setup& setup, const
   }
   PlannedTargets all;
   all.poses = repeated(once.poses, plan.repeats, plan.there_and_back);
+  for (const std::size_t row : planned.time_s.empty() ? std::vector<std::size_t>() : once.row) {
+    all.time_s.push_back(planned.time_s[row]);
+  }
   for (std::size_t r = 0; r < plan.repeats; ++r) all.repeat(once, plan.there_and_back && r % 2 == 1);
   all.file = std::move(planned.poses);
   return all;
@@ -105,7 +115,7 @@ PoseList plan_poses(const Machine& machine, const MeasurementPlan& plan, std::ui
 }
 
 PlannedReadings planned_readings(const Machine& machine, const Setup& setup, const MeasurementPlan& plan,
-                                 std::uint64_t seed) {
+                                 std::uint64_t seed, const ChannelUse& channels) {
   const Instrument& device = *setup.device;
   PlannedReadings planned;
   InstrumentReadings& readings = planned.readings;
@@ -117,10 +127,11 @@ PlannedReadings planned_readings(const Machine& machine, const Setup& setup, con
   try {
     // A file goes from row to row, whatever their targets.
     if (plan.kind == PlanKind::poses) {
-      const PlannedTargets rows = planned_targets(machine, setup, plan);
+      const PlannedTargets rows = planned_targets(machine, setup, plan, channels);
       for (std::size_t n = 0; n < rows.poses.count(); ++n) {
         target = rows.target[n];
         append(rows.station[n], rows.poses.pose(n));
+        if (!rows.time_s.empty()) readings.time_s.resize(readings.count(), rows.time_s[n]);
         readings.poses.state.resize(rows.file.state.size());
         for (std::size_t j = 0; j < rows.file.state.size(); ++j) {
           if (rows.file.state[j].empty()) continue;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "abbe/formats/readings/channel_file.h"
 #include "abbe/formats/study/study.h"
 #include "abbe/instruments/instrument.h"
 
@@ -20,8 +21,9 @@ struct PlannedReadings {
 };
 
 /// What one plan would measure with an instrument: each pose with each target and each of its inputs.
+/// @param channels  states by the times of poses; plans that are no file of poses have no times
 /// @throws InputError if a pose is out of reach
 PlannedReadings planned_readings(const Machine& machine, const Setup& setup, const MeasurementPlan& plan,
-                                 std::uint64_t seed);
+                                 std::uint64_t seed, const ChannelUse& channels = {});
 
 }  // namespace abbe

@@ -7,6 +7,7 @@
 
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/report/words/state_words.h"
 
 namespace abbe {
 
@@ -48,6 +49,7 @@ ScannedPoints write_scanned_points(const ScannedPointsRequest& request, const Jo
   ScannedPoints result;
   result.machine = request.machine.name;
   result.errors_file = request.errors_file;
+  result.at_state = request.at_state;
   result.output = request.output;
   result.summary = scan_points(
       request.readings, request.machine,
@@ -66,6 +68,7 @@ std::string scanned_points_text(const ScannedPoints& result) {
       fmt::format("{} readings on {}, {}\n{} points written to {}\n", summary.readings, result.machine,
                   result.errors_file.empty() ? "machine without errors" : "errors of " + result.errors_file,
                   summary.points, result.output);
+  text += state_line(result.at_state);
   if (summary.points > 0) {
     text +=
         fmt::format("  x {:.4f} to {:.4f} mm, y {:.4f} to {:.4f} mm, z {:.4f} to {:.4f} mm\n", summary.lowest[0],
@@ -82,6 +85,7 @@ nlohmann::ordered_json scanned_points_json(const ScannedPoints& result) {
   nlohmann::ordered_json json;
   json["machine"] = result.machine;
   json["errors"] = result.errors_file;
+  add_state(result.at_state, json);
   json["readings"] = summary.readings;
   json["points"] = summary.points;
   json["outside_indication_range"] = summary.out_of_range;

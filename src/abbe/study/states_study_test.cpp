@@ -251,7 +251,7 @@ TEST(StatesStudy, PosesWithoutTheStatesOfTheTruthAreRefused) {
   std::ofstream(folder / "poses.csv") << "X_mm,C_deg,B_deg\n0,0,0\n";
   EXPECT_EQ(message_of([&] { gather_readings(study_in(folder, true)); }),
             "tracker: the true errors depend on ambient, which is not given at all poses; expected poses from a file "
-            "with a column ambient_degC");
+            "with a column ambient_degC, or with time_s and channels that have ambient_degC");
 }
 
 }  // namespace

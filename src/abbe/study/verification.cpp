@@ -10,6 +10,7 @@
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/formats/files/results_files.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/study/random_poses.h"
 #include "abbe/study/test_piece_sizes.h"
@@ -169,8 +170,8 @@ VerificationRequest read_verification(const VerificationFiles& files) {
   request.errors_file = found(files.errors, "errors.toml", "--errors");
   request.truth_file = found(files.truth, "truth.errors.toml", "--truth");
   request.machine = read_machine(machine_file);
-  request.identified = read_errors(request.errors_file, request.machine);
-  request.truth = read_errors(request.truth_file, request.machine);
+  request.identified = read_errors_at(request.errors_file, request.machine, files.states);
+  request.truth = read_errors_at(request.truth_file, request.machine, files.states);
   return request;
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/not_identified.h"
 #include "abbe/study/summary.h"
@@ -122,6 +123,7 @@ std::string verification_text(const Verification& result) {
   text += fmt::format("{}: {} random poses (seed {}) over {}{}\n", result.machine.name, poses.after.size(), result.seed,
                       ranges_text(result.machine, result.ranges),
                       result.both_directions ? ", axes coming from either side" : "");
+  text += state_line(result.partial.at_state);
   const auto row = [&text](const char* name, const SampleStatistics& s, double unit, const char* unit_name) {
     text += fmt::format("  {:<46} mean {:.3f}  rms {:.3f}  95 % {:.3f}  max {:.3f} {}\n", name, unit * s.mean,
                         unit * s.rms, unit * s.p95, unit * s.maximum, unit_name);
@@ -164,6 +166,7 @@ nlohmann::ordered_json verification_json(const Verification& result) {
   unseen["outside_range"] = poses.not_covered;
   unseen["not_reached"] = poses.not_reached;
   json["unseen_poses"] = unseen;
+  add_state(result.partial.at_state, json);
   add_volumetric_figures(result.volumetric, json);
   if (result.partial.is_partial()) {
     json["errors_known"] = result.partial.known;

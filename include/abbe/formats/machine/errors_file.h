@@ -14,6 +14,9 @@ namespace abbe {
 /// Provenance "method" of errors that a simulation is about: what the file does not state is zero.
 inline constexpr const char* kTruthOfSimulation = "truth of a simulation";
 
+/// Columns of states and their values, in the order of the machine: {"ambient_degC", 26.5}.
+using StateValues = std::vector<std::pair<std::string, double>>;
+
 /// Contents of a `*.errors.toml` file: errors, their covariance and where they come from.
 struct ErrorsFile {
   ErrorSet errors;
@@ -24,6 +27,7 @@ struct ErrorsFile {
   std::vector<std::string> distrusted{};  ///< why they must not be used as they are, a sentence each; empty: trusted
   bool misfit_accepted = false;           ///< somebody who knew these reasons wanted to use the errors nevertheless
   std::vector<std::string> warnings{};    ///< what else the identification had to say
+  StateValues at_state{};                 ///< at which the errors are taken; empty: as the file has them
 };
 
 /// Refuses to correct with errors that are not to be trusted, unless their user knows it.

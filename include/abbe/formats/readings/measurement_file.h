@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "abbe/errors/poses.h"
+#include "abbe/formats/readings/channel_file.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/instruments/trackers/tracker.h"
 #include "abbe/machine/machine.h"
@@ -26,6 +27,7 @@ struct MeasurementOptions {
   ColumnMapping mapping;
   bool check_travel = true;  ///< refuse commands outside an axis's travel
   int threads = 0;           ///< 0: all
+  ChannelUse channels{};     ///< states by the times of the readings; not of files of poses
 };
 
 /// Reads a measurement CSV: see docs/formats.md. Every row counts or is an error; rows keep their order. @throws

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "abbe/errors/error_set.h"
+#include "abbe/formats/readings/channel_file.h"
 #include "abbe/formats/study/report_facts.h"
 #include "abbe/formats/study/study_planning.h"
 #include "abbe/formats/text/csv_reader.h"
@@ -92,6 +93,7 @@ struct Setup {
   bool noise_from_data = false;              ///< use the uncertainties in the data
   std::vector<MeasurementPlan> plans;        ///< simulation
   std::vector<SetupData> data;               ///< measurement; exactly one of plans and data is given
+  ChannelPlan channels{};                    ///< states by the times of readings, beside those of the study
 };
 
 /// One error motion to be identified.
@@ -169,6 +171,7 @@ struct Study {
   int threads = 0;                       ///< 0: all
   std::optional<Simulation> simulation;  ///< absent: the readings come from data files
   std::vector<Setup> setups;
+  ChannelPlan channels{};  ///< states by the times of readings, of all set-ups
   std::optional<IdentificationPlan> identification;
   std::optional<MapPlan> map;
   std::optional<PlanningStudy> planning;

@@ -13,6 +13,12 @@ namespace abbe {
 /// @param later  the readings are still to be planned, or given: neither plans nor data are needed
 Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated,
                  bool later);
+/// Keys `ignore` and `columns` of a file that Abbe did not write.
+ColumnMapping read_column_mapping(TomlTable& table);
+
+/// Keys `channels`, `channel` and `lag_start` of a study or a set-up.
+ChannelPlan read_channel_plan(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
+
 PlanningStudy read_planning(TomlTable& table, const Machine& machine);
 IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
 

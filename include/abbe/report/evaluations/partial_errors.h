@@ -16,6 +16,7 @@ namespace abbe {
 struct PartialErrors {
   std::size_t known = 0;             ///< error motions and location errors of the file, zero positions not counted
   std::vector<std::string> missing;  ///< names of the others: unmodelled_errors(); taken as zero
+  StateValues at_state{};            ///< as ErrorsFile::at_state
 
   bool is_partial() const { return !missing.empty(); }
   std::size_t all() const { return known + missing.size(); }
@@ -33,7 +34,7 @@ std::size_t known_error_count(const Machine& machine, const ErrorSet& errors);
 /// Nothing is missing in the truth of a simulation: what it does not state is zero.
 PartialErrors partial_errors(const Machine& machine, const ErrorsFile& file);
 
-/// Adds errors_known, errors_of_machine, not_known and caution, if some are missing.
+/// Adds at_state; also errors_known, errors_of_machine, not_known and caution, if some are missing.
 void add_partial_errors(const PartialErrors& errors, nlohmann::ordered_json& json);
 
 }  // namespace abbe

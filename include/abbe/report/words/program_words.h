@@ -7,6 +7,7 @@
 #include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/program/program_report.h"
 #include "abbe/compensate/program/program_uncertainty.h"
+#include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/nc/nc_program.h"
 #include "abbe/machine/machine.h"
 
@@ -34,6 +35,7 @@ struct ProgramWordsRequest {
 
 /// What was done to a program, with the uncertainties of the largest corrections.
 struct CorrectedProgram {
+  StateValues at_state{};  ///< at which the errors are taken
   ProgramReport report;
   NcProgramResult text;
   PlaceUncertainty largest;                  ///< at ProgramReport::largest_shift

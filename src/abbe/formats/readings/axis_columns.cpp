@@ -102,8 +102,11 @@ std::size_t add_state_columns(const Machine& machine, std::vector<CsvColumn>& co
   return first;
 }
 
-std::vector<std::vector<double>> take_states(std::string_view text, const std::string& file, const Machine& machine,
-                                             CsvTable& table, std::size_t first, const std::vector<double>& time_s) {
+void take_states(std::string_view text, const std::string& file, const Machine& machine, CsvTable& table,
+                 std::size_t first, std::size_t time, const ChannelUse& channels, PoseList& poses) {
+  const CsvValues none{};
+  const CsvValues& times = time == kNoColumn ? none : table.columns[time];
+  const std::vector<double>& time_s = times.numbers;
   std::vector<std::vector<double>> states(machine.states.size());
   bool known = false;
   for (std::size_t j = 0; j < machine.states.size(); ++j) {
@@ -116,6 +119,7 @@ std::vector<std::vector<double>> take_states(std::string_view text, const std::s
   for (std::size_t j = 0; j < machine.states.size(); ++j) {
     const MachineState& state = machine.states[j];
     if (state.kind != StateKind::lag || !states[j].empty() || states[state.first].empty() || time_s.empty()) continue;
+    if (channels.from != nullptr && channels.from->of(j) != nullptr) continue;
     for (std::size_t row = 1; row < time_s.size(); ++row) {
       if (time_s[row] >= time_s[row - 1]) continue;
       throw InputError({file, csv_line(text, row), 0, "time"},
@@ -125,8 +129,10 @@ std::vector<std::vector<double>> take_states(std::string_view text, const std::s
     }
     states[j] = lagged(time_s, states[state.first], state.time_constant);
   }
-  if (!known) states.clear();
-  return states;
+  if (known) poses.state = std::move(states);
+  if (channels.from == nullptr) return;
+  const ReadingRows rows{file, times.header, [text](std::size_t row) { return csv_line(text, row); }};
+  channels.from->give(machine, time_s, rows, poses, channels.starts);
 }
 
 bool has_state_column(const PoseList& poses, std::size_t state) {

@@ -10,10 +10,13 @@
 #include <vector>
 
 #include "abbe/errors/poses.h"
+#include "abbe/formats/readings/channel_file.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
+
+inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
 /// One required column per axis, chain order.
 std::vector<CsvColumn> axis_columns(const Machine& machine);
@@ -47,10 +50,13 @@ std::vector<std::vector<std::int8_t>> take_approach(std::string_view text, const
 std::size_t add_state_columns(const Machine& machine, std::vector<CsvColumn>& columns);
 
 /// States of poses that were taken from the table, as PoseList::state. A lag without a column of its own is computed
-/// from the column of its channel where there are times; it starts in equilibrium.
-/// @param time_s  [rows] or empty. @throws InputError for times that go back, where a lag is computed from them
-std::vector<std::vector<double>> take_states(std::string_view text, const std::string& file, const Machine& machine,
-                                             CsvTable& table, std::size_t first, const std::vector<double>& time_s);
+/// from the column of its channel where there are times; it starts in equilibrium. Channels of files give the others.
+/// @param poses   from take_poses()
+/// @param first   of the columns of states
+/// @param time    of the times, in s; kNoColumn: the table has none
+/// @throws InputError for times that go back, where a lag is computed from them, and as StateChannels::give()
+void take_states(std::string_view text, const std::string& file, const Machine& machine, CsvTable& table,
+                 std::size_t first, std::size_t time, const ChannelUse& channels, PoseList& poses);
 
 /// Whether the values of a state are given at all poses, so that they can be written.
 bool has_state_column(const PoseList& poses, std::size_t state);

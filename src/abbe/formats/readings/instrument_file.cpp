@@ -90,8 +90,8 @@ InstrumentReadings parse_instrument_readings(std::string_view text, const std::s
   readings.item = take_items(text, file, machine, instrument, targets, readings.poses);
   components.take(text, file, table, readings);
   readings.point_name = std::move(table.columns[point].labels);
+  take_states(text, file, machine, table, states, time, options.channels, readings.poses);
   if (table.columns[time].present) readings.time_s = std::move(table.columns[time].numbers);
-  readings.poses.state = take_states(text, file, machine, table, states, readings.time_s);
   return readings;
 }
 

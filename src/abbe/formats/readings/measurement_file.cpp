@@ -66,8 +66,8 @@ class MeasurementReader {
     read_uncertainty(cartesian ? u_xyz : u_range, cartesian ? cov_xyz : cov_range);
     if (!cartesian && readings.stated != StatedUncertainty::none) refuse_vertical_beams(csv_.columns[range + 2].header);
     readings.point_name = std::move(csv_.columns[point].labels);
+    take_states(text_, file_, machine_, csv_, states, time, options_.channels, readings.poses);
     if (csv_.columns[time].present) readings.time_s = std::move(csv_.columns[time].numbers);
-    readings.poses.state = take_states(text_, file_, machine_, csv_, states, readings.time_s);
     read_names(station, readings.station, table_.stations);
     if (table_.stations.empty()) table_.stations.emplace_back();
     read_names(reflector, readings.reflector, table_.reflectors);
@@ -81,7 +81,7 @@ class MeasurementReader {
     const std::size_t states = add_state_columns(machine_, layout_.columns);
     csv_ = read_csv(text_, file_, layout_.columns, options_.mapping, options_.threads);
     PoseList list = poses();
-    list.state = take_states(text_, file_, machine_, csv_, states, {});
+    take_states(text_, file_, machine_, csv_, states, kNoColumn, {}, list);
     return list;
   }
 

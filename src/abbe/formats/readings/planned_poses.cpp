@@ -14,8 +14,9 @@ namespace {
 
 class PlannedPosesReader {
  public:
-  PlannedPosesReader(std::string_view text, const std::string& file, const Machine& machine, const Setup& setup)
-      : text_(text), file_(file), machine_(machine), setup_(setup) {}
+  PlannedPosesReader(std::string_view text, const std::string& file, const Machine& machine, const Setup& setup,
+                     const ChannelUse& channels)
+      : text_(text), file_(file), machine_(machine), setup_(setup), channels_(channels) {}
 
   PlannedPoses read() {
     std::vector<CsvColumn> columns = axis_columns(machine_);
@@ -24,9 +25,11 @@ class PlannedPosesReader {
     for (const std::string& name : {std::string("setup"), std::string("station"), one, std::string("target")})
       columns.push_back({name, Quantity::dimensionless, true, false});
     const std::size_t states = add_state_columns(machine_, columns);
+    const std::size_t time = columns.size();
+    columns.push_back({"time", Quantity::time, false, false, CsvColumn::Range::any});
     table_ = read_csv(text_, file_, columns);
     PoseList all = take_poses(text_, file_, machine_, table_, true);
-    all.state = take_states(text_, file_, machine_, table_, states, {});
+    take_states(text_, file_, machine_, table_, states, time, {}, all);
     const std::size_t named = table_.columns[target].present ? target : target + 1;
     if (table_.columns[target].present && table_.columns[target + 1].present) {
       throw InputError({file_, 0, 0, "target"}, "is given together with " + table_.columns[target].header,
@@ -36,9 +39,12 @@ class PlannedPosesReader {
     const std::vector<std::string> stations = setup_.device->station_names(), targets = setup_.device->target_names();
 
     PlannedPoses result;
+    std::vector<std::size_t> rows;
     for (std::size_t row = 0; row < table_.rows; ++row) {
       if (table_.columns[setup].present && name(setup, row) != setup_.name) continue;
+      rows.push_back(row);
       result.poses.append(all.pose(row));
+      if (table_.columns[time].present) result.time_s.push_back(table_.columns[time].numbers[row]);
       result.poses.state.resize(all.state.size());
       for (std::size_t j = 0; j < all.state.size(); ++j) {
         if (!all.state[j].empty()) result.poses.state[j].push_back(all.state[j][row]);
@@ -53,6 +59,10 @@ class PlannedPosesReader {
       throw InputError({.file = file_}, fmt::format("has no pose for the set-up '{}'", setup_.name),
                        "rows with its name in the column setup, or no such column");
     }
+    if (channels_.from == nullptr) return result;
+    const ReadingRows places{file_, table_.columns[time].header,
+                             [&](std::size_t pose) { return csv_line(text_, rows[pose]); }};
+    channels_.from->give(machine_, result.time_s, places, result.poses, channels_.starts);
     return result;
   }
 
@@ -80,19 +90,21 @@ class PlannedPosesReader {
   const std::string& file_;
   const Machine& machine_;
   const Setup& setup_;
+  const ChannelUse& channels_;
   CsvTable table_;
 };
 
 }  // namespace
 
 PlannedPoses parse_planned_poses(std::string_view text, const std::string& file, const Machine& machine,
-                                 const Setup& setup) {
-  return PlannedPosesReader(text, file, machine, setup).read();
+                                 const Setup& setup, const ChannelUse& channels) {
+  return PlannedPosesReader(text, file, machine, setup, channels).read();
 }
 
-PlannedPoses read_planned_poses(const std::filesystem::path& path, const Machine& machine, const Setup& setup) {
+PlannedPoses read_planned_poses(const std::filesystem::path& path, const Machine& machine, const Setup& setup,
+                                const ChannelUse& channels) {
   const MappedFile file(path);
-  return parse_planned_poses(file.text(), path.string(), machine, setup);
+  return parse_planned_poses(file.text(), path.string(), machine, setup, channels);
 }
 
 }  // namespace abbe

@@ -153,6 +153,7 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
   study.output = folder / root.text_or("output", "results/" + bare_name(path));
   if (auto table = root.optional_table("simulate")) study.simulation = read_simulation(*table, folder);
   if (auto table = root.optional_table("plan")) study.planning = read_planning(*table, machine);
+  study.channels = read_channel_plan(root, folder, machine);
   for (TomlTable& table : root.tables("setup")) {
     study.setups.push_back(
         read_setup(table, folder, machine, study.simulation.has_value(),
@@ -178,7 +179,17 @@ void require_files(TomlTable& root, const std::filesystem::path& folder) {
   const auto require = [&](std::optional<TomlTable> table, const char* key, const char* expected) {
     if (table && table->has(key)) table->file(key, folder, expected);
   };
+  const auto require_channels = [&](TomlTable& table) {
+    for (const std::string& name : table.texts_or_none("channels")) {
+      std::error_code ignored;
+      if (std::filesystem::exists(folder / name, ignored)) continue;
+      table.fail("channels", fmt::format("there is no file {}", (folder / name).string()), "CSV files of channels");
+    }
+    for (TomlTable& channel : table.tables("channel")) channel.file("file", folder, "a CSV file of channels");
+  };
+  require_channels(root);
   for (TomlTable& setup : root.tables("setup")) {
+    require_channels(setup);
     for (TomlTable& data : setup.tables("data")) data.file("file", folder, "a CSV file of readings");
   }
   require(root.optional_table("simulate"), "errors", "a file of errors");

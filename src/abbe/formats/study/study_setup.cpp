@@ -11,11 +11,7 @@ namespace {
 SetupData read_data(TomlTable& table, const std::filesystem::path& folder) {
   SetupData data;
   data.file = folder / table.text("file");
-  data.mapping.ignore = table.texts_or_none("ignore");
-  data.mapping.ignored_by = "`ignore`";
-  if (auto columns = table.optional_table("columns")) {
-    for (const std::string& ours : columns->keys()) data.mapping.columns.emplace(ours, columns->text(ours));
-  }
+  data.mapping = read_column_mapping(table);
   table.finish();
   return data;
 }
@@ -66,6 +62,7 @@ Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Ma
     if (simulated) table.fail("data", "is given together with [simulate]", "only one of them");
     setup.data.push_back(read_data(data, folder));
   }
+  setup.channels = read_channel_plan(table, folder, machine);
   if (setup.plans.empty() && setup.data.empty() && !later) {
     table.fail("", "the readings are missing", simulated ? "[[setup.plan]]" : "[[setup.data]] with a file");
   }

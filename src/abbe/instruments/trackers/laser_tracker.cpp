@@ -265,6 +265,7 @@ SimulatedInstrument LaserTracker::simulate(const Machine& machine, const ErrorSe
         {static_cast<std::uint16_t>(station_of(plan.item[k])), static_cast<std::uint16_t>(target_of(plan.item[k]))});
   }
   PoseList poses = plan.poses;
+  own.time_s = plan.time_s;
   if (each > 0) {
     const auto keep_first = [each](auto& values) {
       std::size_t kept = 0;
@@ -276,6 +277,7 @@ SimulatedInstrument LaserTracker::simulate(const Machine& machine, const ErrorSe
     for (auto& values : poses.state) {
       if (!values.empty()) keep_first(values);
     }
+    if (!own.time_s.empty()) keep_first(own.time_s);
   } else {
     own.choice = SightChoice::cycle;
   }

@@ -207,7 +207,7 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
       for (std::size_t k = 0; k < 3; ++k) readings.measured[k].push_back(reading.measured[static_cast<int>(k)]);
       readings.station.push_back(reading.sight.station);
       readings.reflector.push_back(reading.sight.reflector);
-      readings.time_s.push_back(options.interval_s * index);
+      readings.time_s.push_back(options.time_s.empty() ? options.interval_s * index : options.time_s[reading.pose]);
       if (reading.outlier) result.outliers.push_back(index);
       if (reading.swapped) result.swapped.push_back(index);
     }

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "abbe/instruments/measurement_plan.h"
+#include "abbe/report/words/state_words.h"
 #include "abbe/verify/known_range.h"
 #include "abbe/verify/unmodelled_errors.h"
 
@@ -49,6 +50,7 @@ std::size_t known_error_count(const Machine& machine, const ErrorSet& errors) {
 PartialErrors partial_errors(const Machine& machine, const ErrorsFile& file) {
   PartialErrors partial;
   partial.known = known_error_count(machine, file.errors);
+  partial.at_state = file.at_state;
   if (is_truth(file)) return partial;
   std::vector<AxisRange> ranges;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) ranges.push_back(known_range(machine, file.errors, i, 2));
@@ -61,6 +63,7 @@ PartialErrors partial_errors(const Machine& machine, const ErrorsFile& file) {
 }
 
 void add_partial_errors(const PartialErrors& errors, nlohmann::ordered_json& json) {
+  add_state(errors.at_state, json);
   if (!errors.is_partial()) return;
   json["errors_known"] = errors.known;
   json["errors_of_machine"] = errors.all();

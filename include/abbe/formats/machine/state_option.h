@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// "ambient_degC=26.5" of an option that may be given several times: values of measured and lag states, with the unit
+/// in the name as in columns.
+/// @param option  how the user calls it, for the error: "--state"
+/// @return [states of the machine] in the unit of each state, NaN where not given
+/// @throws InputError
+std::vector<double> state_options(const Machine& machine, const std::string& option,
+                                  const std::vector<std::string>& texts);
+
+/// The errors of a file as they are at given values of measured and lag states: at_state(), with the covariance and the
+/// standard uncertainties. Files whose errors use no such state come back as they are.
+/// @param values  [states of the machine], as state_options() returns them
+/// @param path    of the file, for messages
+/// @throws InputError naming the options of the states that are not given
+ErrorsFile at_given_states(const Machine& machine, ErrorsFile file, std::span<const double> values,
+                           const std::string& path);
+
+/// read_errors() with --state: for a job that cannot take states into account, and can be done at values of theirs.
+/// @param states  texts of --state. @throws InputError as both
+ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
+                          const std::vector<std::string>& states);
+
+/// "ambient_degC = 26.5, column_degC = 24".
+std::string state_words(const StateValues& values);
+
+}  // namespace abbe
