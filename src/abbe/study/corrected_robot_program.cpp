@@ -291,7 +291,7 @@ class RobotCorrector {
 }  // namespace
 
 CorrectedRobotProgram correct_robot_program(const RobotProgramRequest& request) {
-  refuse_states(request.machine, request.errors.errors, "a correction of robot programs");
+  refuse_states(request.machine, request.errors.errors, "a correction of robot programs", UsableStates::of_commands);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   check_largest_turn(request.largest_turn);
   if (request.leave_out_factor != 0) {

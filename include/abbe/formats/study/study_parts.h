@@ -19,7 +19,7 @@ ColumnMapping read_column_mapping(TomlTable& table);
 /// Keys `channels`, `channel` and `lag_start` of a study or a set-up.
 ChannelPlan read_channel_plan(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
 
-PlanningStudy read_planning(TomlTable& table, const Machine& machine);
+PlanningStudy read_planning(TomlTable& table, const Machine& machine, const std::filesystem::path& folder);
 IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
 
 /// What a plan may name: targets ("reflectors" of a tracker, "items" of other instruments) and stations (tracker only).
