@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kShares[] = {0.3, 0.4, 0.5, 0.65, 0.8, 1, 1.25, 1.6, 2};
 constexpr int kTimeRounds = 6;
+constexpr int kCourseRounds = 20;
 constexpr std::size_t kRandomDraws = 9;
 constexpr int kRefinements = 4;
 constexpr std::size_t kPosesAround = 6;
@@ -199,7 +200,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
   double budget = plan.time - fixed;
   ConditionGroups groups(model);
   if (has_costs) count = plan.readings > 0 ? static_cast<std::size_t>(plan.readings) : result.candidates;
-  for (int round = 0; round < kTimeRounds; ++round) {
+  for (int round = 0; round < (model.states().has_course() ? kCourseRounds : kTimeRounds); ++round) {
     options.count = std::min(count, result.candidates);
     if (has_costs) options.time_s = budget;
     groups.limit(candidates, options);
@@ -271,8 +272,8 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
   result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
 
   if (!ConditionGroups::fit(model, result.readings)) {
-    throw InputError({.field = "plan.course"}, "the readings do not end before the course does",
-                     "fewer readings, or a longer course");
+    throw InputError({.field = "plan.course"}, "the readings do not end within their parts of the course",
+                     "fewer readings, or longer parts");
   }
   judge_over_states(model, *space, predictions, result);
   if (result.plan.status != PlanningStatus::done) return result;

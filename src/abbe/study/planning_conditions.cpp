@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numeric>
+#include <utility>
 
-#include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/instruments/path_plan.h"
 #include "abbe/study/planning_schedule.h"
@@ -18,7 +16,8 @@ using Eigen::Index;
 constexpr double kNoTime = std::numeric_limits<double>::infinity();
 /// More conditions than these are taken only if the study wants them.
 constexpr std::size_t kMostConditionsTried = 8;
-constexpr double kAsGood = 0.02;
+constexpr std::size_t kMostJudged = 250;
+constexpr double kAsGoodConditions = 0.02;
 /// Of the way between poses at random, what an order of short travel leaves.
 constexpr double kShortTravel = 0.1;
 constexpr std::size_t kPosesOfTravel = 50;
@@ -29,7 +28,8 @@ class MeanInformation {
   explicit MeanInformation(const ConditionsToJudge& judged)
       : judged_(judged),
         prior_(judged.model.weak_prior() + judged.model.known().transpose() * judged.model.known()),
-        prediction_(judged.predictions.transpose() * judged.predictions / (judged.predictions.rows() / 3.0)) {
+        prediction_(judged.predictions.transpose() * judged.predictions /
+                    (static_cast<double>(judged.predictions.rows()) / 3)) {
     const std::size_t count = judged.model.states().conditions().size();
     const PlanningCandidates& rows = judged.candidates.rows;
     mean_.assign(count, Eigen::MatrixXd::Zero(rows.rows.cols(), rows.rows.cols()));
@@ -96,6 +96,17 @@ std::vector<std::size_t> one_more(const MeanInformation& mean, std::vector<std::
   return chosen;
 }
 
+PlanningCandidates::Rows rows_of_candidates(const PlanningCandidates& all, const std::vector<std::size_t>& chosen) {
+  Index count = 0;
+  for (const std::size_t i : chosen) count += static_cast<Index>(all.first_row[i + 1] - all.first_row[i]);
+  PlanningCandidates::Rows rows(count, all.rows.cols());
+  Index next = 0;
+  for (const std::size_t i : chosen)
+    for (std::size_t k = all.first_row[i]; k < all.first_row[i + 1]; ++k)
+      rows.row(next++) = all.rows.row(static_cast<Index>(k));
+  return rows;
+}
+
 /// Directions that the candidates of some conditions leave open, of those that all candidates see.
 void find_open(const ConditionsToJudge& judged, const PlanningSpace& space, ConditionsOfANumber& one) {
   std::vector<std::size_t> there;
@@ -106,26 +117,18 @@ void find_open(const ConditionsToJudge& judged, const PlanningSpace& space, Cond
   const PlanValue value = value_of(space, there, Eigen::MatrixXd());
   one.open = space.dimension() - value.rank;
   if (one.open == 0) return;
-  const PlanningCandidates& all = judged.candidates.rows;
-  PlanningCandidates::Rows rows(0, all.rows.cols());
-  Index count = 0;
-  for (const std::size_t i : there) count += static_cast<Index>(all.first_row[i + 1] - all.first_row[i]);
-  rows.resize(count, all.rows.cols());
-  Index next = 0;
-  for (const std::size_t i : there)
-    for (std::size_t k = all.first_row[i]; k < all.first_row[i + 1]; ++k)
-      rows.row(next++) = all.rows.row(static_cast<Index>(k));
-  one.open_words = open_errors(judged.model, space, rows, value.rank);
+  one.open_words = open_errors(judged.model, space, rows_of_candidates(judged.candidates.rows, there), value.rank);
 }
 
-/// What readings at these conditions are worth, chosen as a plan chooses them.
+/// What readings at these conditions are worth, chosen as a plan chooses them. More than kMostJudged are as many times
+/// a choice of these: candidates are fewer than those of the plan itself.
 void judge_choice(const ConditionsToJudge& judged, const PlanningSpace& with_prior, ConditionsOfANumber& one) {
   const PlanningStudy& plan = *judged.model.study().planning;
   PlanningOptions options;
   options.threads = judged.model.study().threads;
   options.most_passes = 1;
-  options.count = one.readings;
-  options.repeats = std::max<std::size_t>(1, one.readings);  // the candidates are fewer than those of the plan itself
+  options.count = std::min(one.readings, kMostJudged);
+  options.repeats = options.count;
   if (plan.goal != PlanningGoal::determinant) {
     options.criterion = PlanningCriterion::variance;
     options.functionals = plan.goal == PlanningGoal::volumetric ? judged.predictions : judged.model.parameter_rows();
@@ -137,9 +140,9 @@ void judge_choice(const ConditionsToJudge& judged, const PlanningSpace& with_pri
   ConditionGroups(judged.model).limit(judged.candidates, options);
   const ReadingPlan chosen = plan_readings(with_prior, options);
   if (chosen.status != PlanningStatus::done) return;
-  one.readings = chosen.chosen.size();
-  const PlanValue value = value_of(with_prior, chosen.chosen, judged.predictions);
-  one.with_prior = std::sqrt(value.variance / (static_cast<double>(judged.predictions.rows()) / 3));
+  const double times = static_cast<double>(one.readings) / static_cast<double>(options.count);
+  const PlanningCandidates::Rows rows = rows_of_candidates(judged.candidates.rows, chosen.chosen) * std::sqrt(times);
+  one.with_prior = uncertainty_with_prior(judged.model, rows, judged.predictions);
 }
 
 void mark_chosen(std::vector<ConditionsOfANumber>& curve) {
@@ -152,7 +155,7 @@ void mark_chosen(std::vector<ConditionsOfANumber>& curve) {
     if (one.with_prior > 0 && one.open == least_open) best = std::min(best, one.with_prior);
   }
   for (ConditionsOfANumber& one : curve) {
-    if (!(one.with_prior > 0) || one.open != least_open || one.with_prior > (1 + kAsGood) * best) continue;
+    if (!(one.with_prior > 0) || one.open != least_open || one.with_prior > (1 + kAsGoodConditions) * best) continue;
     one.chosen = true;
     return;
   }
@@ -181,7 +184,7 @@ Eigen::VectorXd variances_with_prior(const PlanningModel& model, const PlanningC
 
 }  // namespace
 
-double quickest_reading(const PlanningModel& model) {
+double time_of_reading(const PlanningModel& model, bool together) {
   const Study& study = model.study();
   const PlanningStudy& plan = *study.planning;
   const PoseList poses = random_plan(study.machine, plan.axes, kPosesOfTravel, study.seed);
@@ -189,18 +192,18 @@ double quickest_reading(const PlanningModel& model) {
   for (std::size_t k = 1; k < poses.count(); ++k) {
     travel += travel_time(plan, poses.pose(k - 1), poses.pose(k)) / static_cast<double>(kPosesOfTravel - 1);
   }
-  const double sights = static_cast<double>(std::max<std::size_t>(1, model.sight_count()));
+  const double sights = together ? static_cast<double>(std::max<std::size_t>(1, model.sight_count())) : 1;
   return std::max(1e-3, plan.reading + (plan.settle + kShortTravel * travel) / sights);
 }
 
 std::size_t readings_within(const PlanningModel& model, const std::vector<std::size_t>& conditions) {
   const PlanningStudy& plan = *model.study().planning;
   std::size_t most = plan.readings > 0 ? static_cast<std::size_t>(plan.readings) : static_cast<std::size_t>(-1);
-  const double quickest = quickest_reading(model);
   if (plan.time > 0) {
+    const double each = time_of_reading(model, false);
     double left = plan.time - model.states().change_time(conditions);
     for (const Setup& setup : model.study().setups) left -= plan.set_up_of(setup.name);
-    most = std::min(most, static_cast<std::size_t>(std::max(0.0, left / quickest)));
+    most = std::min(most, static_cast<std::size_t>(std::max(0.0, left / each)));
   }
   if (!model.states().has_course()) return most;
   const std::vector<std::size_t> room = ConditionGroups(model).room;
@@ -243,7 +246,7 @@ std::vector<ConditionsOfANumber> choose_conditions(const ConditionsToJudge& judg
 
 ConditionGroups::ConditionGroups(const PlanningModel& model) {
   if (!model.states().has_course()) return;
-  const double quickest = quickest_reading(model);
+  const double quickest = time_of_reading(model, true);
   for (const PlanningCondition& slot : model.states().conditions()) {
     const double time = slot.to_s - slot.from_s - model.states().visit_time();
     room.push_back(static_cast<std::size_t>(std::max(0.0, time / quickest)));
@@ -279,8 +282,12 @@ bool ConditionGroups::shrink(const PlanningModel& model, const std::vector<Candi
 }
 
 bool ConditionGroups::fit(const PlanningModel& model, const std::vector<CandidateReading>& readings) {
-  if (!model.states().has_course() || readings.empty()) return true;
-  return reading_times(model.study(), readings, model.states()).back() <= model.states().conditions().back().to_s;
+  if (!model.states().has_course()) return true;
+  const std::vector<double> times = reading_times(model.study(), readings, model.states());
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    if (times[k] > model.states().conditions()[readings[k].condition].to_s) return false;
+  }
+  return true;
 }
 
 void judge_over_states(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,

@@ -17,8 +17,9 @@ struct ConditionsToJudge {
   const Eigen::MatrixXd& predictions;
 };
 
-/// About the time of one reading with its way, s; at the least.
-double quickest_reading(const PlanningModel& model);
+/// About the time of one reading with its way, s.
+/// @param together  at a pose at which everything is read that can be; else each at a pose of its own
+double time_of_reading(const PlanningModel& model, bool together);
 
 /// How many readings a time has room for after the changes between conditions and the set-ups; 0: none.
 std::size_t readings_within(const PlanningModel& model, const std::vector<std::size_t>& conditions);
@@ -35,7 +36,7 @@ struct ConditionGroups {
   void limit(const PlanningModel::Candidates& candidates, PlanningOptions& options) const;
   /// Less room where readings do not end with their part of the course. @return false if all do
   bool shrink(const PlanningModel& model, const std::vector<CandidateReading>& readings);
-  /// Whether the last reading ends within the course.
+  /// Whether all readings end within their parts of the course.
   static bool fit(const PlanningModel& model, const std::vector<CandidateReading>& readings);
 };
 

@@ -305,16 +305,19 @@ PlanningCandidates PlanningModel::rows_of(const std::vector<CandidateReading>& r
   Candidates counted;
   for (std::size_t s = 0; s < devices_.size(); ++s) {
     seen.push_back(empty_readings(study_.machine, *devices_[s]));
-    InstrumentReadings plan = empty_readings(study_.machine, *devices_[s]);
-    plan.measured.clear();
     std::vector<std::vector<double>> own;
-    for (std::size_t k = 0; k < readings.size(); ++k) {
-      if (readings[k].setup != s) continue;
-      plan.append(readings[k].pose, readings[k].item, readings[k].inputs);
-      own.push_back(states.at(k));
+    // One item at a time: see() takes all readings of a tracker as those of one sight.
+    for (std::size_t item = 0; item < devices_[s]->items().size(); ++item) {
+      InstrumentReadings plan = empty_readings(study_.machine, *devices_[s]);
+      plan.measured.clear();
+      for (std::size_t k = 0; k < readings.size(); ++k) {
+        if (readings[k].setup != s || readings[k].item != item) continue;
+        plan.append(readings[k].pose, item, readings[k].inputs);
+        own.push_back(states.at(k));
+      }
+      see(s, plan, seen, counted);
+      if (seen[s].count() != own.size()) throw std::logic_error("planning: a candidate cannot be read any more");
     }
-    see(s, plan, seen, counted);
-    if (seen[s].count() != plan.count()) throw std::logic_error("planning: a candidate cannot be read any more");
     give_states(own, seen[s].poses);
   }
   return candidate_rows(problem(seen));

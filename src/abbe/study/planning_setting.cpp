@@ -15,8 +15,8 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kPredictionPoses = 200;
-constexpr std::size_t kPosesPerState = 8;  // and not fewer than these
-constexpr std::size_t kLeastPoses = 40;    // under each condition
+constexpr std::size_t kPosesPerState = 8;      // and not fewer than these
+constexpr std::size_t kPosesOfCondition = 40;  // under each condition
 constexpr double kWholeTurn = 2 * std::numbers::pi * 0.99;
 constexpr double kAtAnEnd = 0.4;
 
@@ -55,7 +55,7 @@ ErrorSet measurable_errors(const Study& study, const PlanningModel::Candidates& 
 std::vector<PosesAt> poses_to_try(const Study& study, const std::vector<std::size_t>& conditions, std::size_t count) {
   const PlanningStudy& plan = *study.planning;
   std::vector<PosesAt> tried;
-  const std::size_t each = conditions.size() == 1 ? count : std::max(kLeastPoses, count / conditions.size());
+  const std::size_t each = conditions.size() == 1 ? count : std::max(kPosesOfCondition, count / conditions.size());
   for (const std::size_t condition : conditions) {
     tried.push_back({plan.grid ? grid_plan(study.machine, plan.axes)
                                : candidate_poses(study.machine, plan, each, study.seed + kSeedOfCondition * condition),

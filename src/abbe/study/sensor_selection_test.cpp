@@ -105,7 +105,7 @@ TEST(SensorSelection, PredictsTheErrorOfEverySubsetAsSimulationsDo) {
 }
 
 TEST(SensorSelection, FindsTheBestSubsetsOfEveryNumber) {
-  const SensorCase c;
+  const SensorCase c(0.002);
   const SensorPrediction planned = c.planned();
   const auto error = [&](const std::vector<std::uint8_t>& has) { return predicted_error(c.terms, planned, has); };
   const SensorSelection found = select_sensors(c.terms.names, error);
@@ -117,8 +117,8 @@ TEST(SensorSelection, FindsTheBestSubsetsOfEveryNumber) {
     best[number] = std::min(best[number], by_unit_vectors(c, has));
   }
   EXPECT_NEAR(found.none, best[0], 1e-9);
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(found.forward[k].error, best[k + 1], 1e-9) << k;
-  EXPECT_NEAR(found.all, best[4], 1e-9);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(found.forward[k].error, best[k + 1], 1e-6) << k;
+  EXPECT_NEAR(found.all, best[4], 1e-6);
   // Of two alike one is enough, and the coolant does nothing.
   EXPECT_EQ(found.enough, 2U);
   EXPECT_EQ(found.without.front().sensor, 1U) << "nothing stands in for the motor";
@@ -127,7 +127,7 @@ TEST(SensorSelection, FindsTheBestSubsetsOfEveryNumber) {
   for (const SensorStep& step : found.without) {
     std::vector<std::uint8_t> has(4, 1);
     has[step.sensor] = 0;
-    EXPECT_NEAR(step.error, by_unit_vectors(c, has), 1e-9);
+    EXPECT_NEAR(step.error, by_unit_vectors(c, has), 1e-6);
   }
 }
 
