@@ -11,6 +11,7 @@ namespace abbe {
 namespace {
 
 constexpr double kHour_s = 3600;
+constexpr std::size_t kStatesInText = 12;
 
 bool is_part_of_plan(const StudyPlan& result) { return result.states.any(); }
 
@@ -156,7 +157,10 @@ std::string planned_states_text(const Study& study, const StudyPlan& result) {
   }
   text += fmt::format("\nuncertainty where the errors are used (root mean square{})\n",
                       leaves_states_open(result) ? ", with prior knowledge" : "");
-  for (const UncertaintyAtStates& at : result.over_states) {
+  // A dozen lines; JSON has all.
+  const std::size_t step = std::max<std::size_t>(1, result.over_states.size() / kStatesInText);
+  for (std::size_t k = 0; k < result.over_states.size(); k += step) {
+    const UncertaintyAtStates& at = result.over_states[k];
     text += fmt::format("  {:>8.3f} um  {}{}\n", 1e3 * at.uncertainty,
                         result.states.has_course() ? fmt::format("{:.2f} h, ", at.time_s / kHour_s) : "",
                         result.states.words(at.states));
