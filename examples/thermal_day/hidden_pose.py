@@ -12,7 +12,7 @@ WORKPIECE = np.array([380.0, 220.0, 0.0])
 CELLS = {"column": 31, "bed": 33, "X": 41, "Y": 29, "Z": 31}  # ends of cells, in the order of deformation()
 LENGTH = {"column": 1.5, "bed": 1.6, "X": 1.0, "Y": 0.7, "Z": 0.75}  # m
 HEAD_AT, COLUMN_AT, TABLE_AT = 1.05, 1.25, 0.75  # m: guide of Z on the column, column and table on the bed
-OVERHANG, GUIDE_HEIGHT, SCREW_TOP = 450.0, 560.0, 1.45  # mm: column front to spindle; guide above the gauge; m
+OVERHANG, BED_TOP, SCREW_TOP = 450.0, -300.0, 1.45  # mm: front of the column from the spindle; top of the bed; m
 
 
 def rotation(angles):
@@ -96,7 +96,7 @@ class HiddenPoses:
         guide = HEAD_AT + z / 1000
         slope, along_y = at("column slope", guide), at("column deflection", guide)
         along_z = at("column growth", np.full_like(z, SCREW_TOP)) - at("Z", 0.10 - z / 1000)
-        about = np.stack([zero, np.full_like(z, OVERHANG), GUIDE_HEIGHT + z], -1)
+        about = np.stack([zero, np.full_like(z, OVERHANG), BED_TOP + 1e3 * guide], -1)
         # A slope towards the back turns the upper end back: a negative turn about X.
         points = moved(points, 1e3 * np.stack([zero, along_y, along_z], -1), np.stack([-slope, zero, zero], -1), about)
         points = self.on_bed(points, at, zero + COLUMN_AT)
@@ -118,7 +118,7 @@ class HiddenPoses:
         zero = np.zeros(len(points))
         shift = 1e3 * np.stack([zero, at("bed growth", place), at("bed deflection", place)], -1)
         angles = np.stack([at("bed slope", place), zero, zero], -1)
-        about = np.stack([zero, 1e3 * (place - TABLE_AT), zero - 300], -1)
+        about = np.stack([zero, 1e3 * (place - TABLE_AT), zero + BED_TOP], -1)
         return (moved_back if back else moved)(points, shift, angles, about)
 
 

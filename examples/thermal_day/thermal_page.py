@@ -17,7 +17,8 @@ OWN_STYLE = """
 .of-case-before { stroke: var(--truth); }
 .of-case-geometric { stroke: var(--before); }
 .of-case-thermal { stroke: var(--after); }
-.legend .stroke.of-case-before { border-color: var(--truth); }
+.legend .dot.of-case-before { background: var(--truth); }
+.legend .dot.of-case-geometric { background: var(--before); }
 .legend .stroke.of-case-geometric { border-color: var(--before); }
 .legend .block { width: 0.9rem; height: 0.7rem; background: var(--band); }
 .legend .block.door { background: var(--below); opacity: 0.4; }
@@ -56,6 +57,8 @@ def tile(heading, value, unit, note, state=""):
 
 
 def legend(entries):
+    if not entries:
+        return ""
     keys = "".join(f'<span><i class="{kind}" aria-hidden="true"></i>{escape(text)}</span>' for kind, text in entries)
     return f'<p class="legend">{keys}</p>'
 
@@ -110,7 +113,7 @@ def all_over_the_travel(result):
 
     drawing = both(draw, result["unseen"][0], 0, 1.05 * max(of.max() for of in length.values()), "displacement / \u00b5m",
                    "Displacement of the functional point at poses all over the travel")
-    keys = [(f"stroke of-case-{case}" if case != "thermal" else "stroke", words) for case, words in CASES.items()]
+    keys = [(f"dot of-case-{case}", words) for case, words in CASES.items()]
     first = figure(drawing, f"Displacement of the functional point at {len(hours)} random poses, after the best fit of "
                    "the workpiece datum: one for the whole day.", keys + EVENTS)
 
@@ -125,7 +128,7 @@ def all_over_the_travel(result):
     covered = 100 * result["figures"]["covered"]
     second = figure(drawing, f"The lowest points alone. Band: predicted expanded uncertainty of the length, k = 2; "
                     f"{covered:.0f}\u202f% of the poses lie in it.",
-                    [("stroke", CASES["thermal"]), ("block", "predicted, k = 2"), *EVENTS])
+                    [("dot", CASES["thermal"]), ("block", "predicted, k = 2"), *EVENTS])
     return first, second
 
 
@@ -143,8 +146,8 @@ def same_place(result):
 
         drawing = both(draw, result["unseen"][0], 1.08 * lowest, 1.08 * highest, f"{axis} / \u00b5m",
                        f"Drift along {axis} of the tool over the middle of the table")
-        drawings.append(figure(drawing, f"{axis}, less its mean over the day.",
-                               [("stroke of-case-geometric", CASES["geometric"]), ("stroke", CASES["thermal"])]))
+        keys = [("stroke of-case-geometric", CASES["geometric"]), ("stroke", CASES["thermal"]), *EVENTS]
+        drawings.append(figure(drawing, f"{axis}, less its mean over the day.", keys if axis == "X" else []))
     return "".join(drawings)
 
 
