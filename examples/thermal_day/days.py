@@ -10,7 +10,7 @@ LEAD, TRAINED, UNSEEN = (0, 24), (24, 96), (96, 120)  # h: records only; reading
 
 @dataclass
 class Job:
-    """A program: from, to (h), speed of the spindle (part of the largest), mean feed (m/min) and stroke of X Y Z (mm)."""
+    """A program: from, to (h), speed of the spindle (part of the largest), mean feed (m/min) and stroke (mm) of X Y Z."""
     start: float
     end: float
     speed: float
@@ -47,7 +47,7 @@ def jobs_of(day, generator, load):
 
 
 def doors_of(day, generator, coldness):
-    """Deliveries: the gate is open for 5 to 25 minutes."""
+    """Deliveries: the door is open for 5 to 25 minutes."""
     doors = []
     for hour in sorted(generator.uniform(6.2, 20.5, size=generator.integers(4, 7))):
         doors.append(Door(24 * day + hour, 24 * day + hour + generator.uniform(5, 25) / 60,
@@ -56,7 +56,7 @@ def doors_of(day, generator, coldness):
 
 
 class Days:
-    """Five days. The last one, which no reading of the identification has seen, has other programs, doors and weather."""
+    """Five days. The last one, which the identification has not seen, has other programs, doors and weather."""
 
     def __init__(self, seed=11):
         generator = np.random.default_rng(seed)

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Inside LinuxCNC, as its display: goes to poses and writes where the joints then stand.
 
-Everything is read from and written to the current folder; the last line written to driver.txt is DONE. Two kinds of runs:
-without temperatures every pose at once, first without and then with the compensation; with them each pose at its hour of
-the day, on the clock of `thermometers`.
+Everything is read from and written to the current folder; the last line written to driver.txt is DONE. Two kinds of
+runs: without temperatures every pose at once, first without and then with the compensation; with them each pose at its
+hour of the day, on the clock of `thermometers`.
 """
 import time
 
@@ -34,7 +34,7 @@ def at_once(operation, pins):
 
 
 def over_the_day(operation, pins, job, say):
-    """Rows: hour, part compensated, nominal X Y Z, joints X Y Z, um behind, states ok, then lags and channels as used."""
+    """Rows: hour, part compensated, nominal X Y Z, joints X Y Z, um behind, states ok, lags, channels as used."""
     pins.enable(1)
     operation.cycles(100)
     start = time.monotonic() + 0.1

@@ -28,7 +28,7 @@ class RodTest(unittest.TestCase):
         self.assertAlmostEqual(stored / (30 * 5000), 1, delta=1e-12)
 
     def test_a_fin_reaches_its_steady_state(self):
-        # Heat Q into the end of a fin whose other end is insulated: Q cosh(m (L - x)) / (k A m sinh(m L)); Incropera 3.6.
+        # Heat Q into the end of a fin with an insulated other end: Q cosh(m (L - x)) / (k A m sinh(m L)); Incropera 3.6.
         length, area, perimeter, convection, heat = 0.8, 1.2e-3, 0.12, 15.0, 20.0
         rod = Rod(length, area, perimeter, 160, STEEL, 20)
         watts = np.zeros(160)
@@ -65,7 +65,7 @@ class PlateTest(unittest.TestCase):
 
     def test_a_gradient_bends_it_to_a_circle(self):
         plate = self.plate()
-        plate.temperature = plate.temperature + 5 * plate.across / 0.4  # 5 K from face to face, warm where it is positive
+        plate.temperature = plate.temperature + 5 * plate.across / 0.4  # 5 K from face to face, warm above
         growth, slope, deflection = plate.deformation()
         curvature = CAST_IRON["expansion"] * 5 / 0.4
         self.assertAlmostEqual(slope[-1], -curvature * 1.5, delta=1e-15)

@@ -66,7 +66,8 @@ class HiddenPoses:
         index = np.clip(np.searchsorted(self.times, hours, side="right") - 1, 0, self.times.size - 2)
         share = ((hours - self.times[index]) / (self.times[index + 1] - self.times[index]))[:, None]
         rows = (1 - share) * self.deformations[index] + share * self.deformations[index + 1]
-        names = [f"{part} {what}" for part in ("column", "bed") for what in ("growth", "slope", "deflection")] + list("XYZ")
+        names = [f"{part} {what}" for part in ("column", "bed") for what in ("growth", "slope", "deflection")]
+        names += list("XYZ")
         found, at = {}, 0
         for name in names:
             count = CELLS[name.split()[0]]
@@ -105,7 +106,8 @@ class HiddenPoses:
         points = self.on_bed(points, at, saddle, back=True)
         shift, angles = self.geometry.motion("Y", y)
         points = points - 1e3 * np.stack([zero, at("Y", 0.12 + (440 - y) / 1000), zero], -1)
-        points = moved_back(points, 0.0, np.stack([zero, zero, np.full_like(y, self.geometry.squareness[0])], -1), np.zeros(3))
+        square = np.stack([zero, zero, np.full_like(y, self.geometry.squareness[0])], -1)
+        points = moved_back(points, 0.0, square, np.zeros(3))
         points = moved_back(points + np.stack([zero, y, zero], -1), shift, angles, np.zeros(3))
         shift, angles = self.geometry.motion("X", x)
         points = points - 1e3 * np.stack([at("X", 0.12 + (760 - x) / 1000), zero, zero], -1)
@@ -114,7 +116,7 @@ class HiddenPoses:
 
     @staticmethod
     def on_bed(points, at, place, back=False):
-        """The bed there: raised and turned about X. Its coordinate begins 750 mm in front of the middle of the table."""
+        """The bed there: raised and turned about X. It begins 750 mm in front of the middle of the table."""
         zero = np.zeros(len(points))
         shift = 1e3 * np.stack([zero, at("bed growth", place), at("bed deflection", place)], -1)
         angles = np.stack([at("bed slope", place), zero, zero], -1)

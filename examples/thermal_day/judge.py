@@ -4,8 +4,8 @@
 Usage: judge.py FOLDER PAGE.html
 
 Exit code 1 if the goals are missed: the error (root mean square of the displacement of the functional point after the
-best fit of the workpiece datum, one for all hours) has to be LEAST times smaller with geometric and thermal compensation
-than with geometric compensation alone, and at most RATIO times its predicted standard uncertainty.
+best fit of the workpiece datum, one for all hours) has to be LEAST times smaller with geometric and thermal
+compensation than with geometric compensation alone, and at most RATIO times its predicted standard uncertainty.
 """
 import csv
 import pathlib
@@ -89,12 +89,17 @@ def predicted_variances(identified, course, factors):
     return 1e6 * parameters, 1e6 * pose
 
 
+def poses_of(readings):
+    with open(readings, encoding="ascii") as file:
+        return len({tuple(line.split(",")[:3]) for line in file}) - 1
+
+
 def rms(errors):
     return float(np.sqrt((errors**2).sum(axis=1).mean()))
 
 
 def check_linuxcnc(identified, commands, joints, day, factors):
-    """Largest difference from what is worked out here: of lags (K), and of corrections at the states that were used (um)."""
+    """Largest difference from what is worked out here: lags (K), corrections at the states that were used (um)."""
     lags = max(np.abs(day[:, 10 + k] - REFERENCE - factors[name]).max() for k, name in enumerate(LAGS))
     used = {name: day[:, 10 + k] - REFERENCE for k, name in enumerate((*LAGS, *SENSORS))}
     expected = identified.by_parameters(commands, TOOL, used, TRAVEL) @ identified.values
@@ -129,19 +134,20 @@ def main():
     figures["ratio"] = figures["thermal"] / figures["predicted"]
     reached = figures["reduction"] >= LEAST and figures["ratio"] <= RATIO
 
-    print(f"{figures['poses']} poses all over the travel, hours {UNSEEN[0]} to {UNSEEN[1]}, unseen by the identification")
+    print(f"{figures['poses']} poses all over the travel, hours {UNSEEN[0]} to {UNSEEN[1]}, which are unseen")
     print(f"LinuxCNC against the equations: lags within {lag_off:.3f} K, corrections within {correction_off:.2f} um")
     print("displacement of the functional point, root mean square (largest):")
     for case, words in (("before", "before"), ("geometric", "geometric compensation"),
                         ("thermal", "geometric and thermal compensation")):
         print(f"  {words:36s} {figures[case]:6.2f} um ({figures['largest'][case]:.1f} um)")
-    print(f"  predicted standard uncertainty       {figures['predicted']:6.2f} um: {figures['parameters']:.2f} um of the "
-          f"parameters, {figures['pose']:.2f} um of what no parameter explains (pose noise)")
+    print(f"  predicted standard uncertainty       {figures['predicted']:6.2f} um: {figures['parameters']:.2f} um of "
+          f"the parameters, {figures['pose']:.2f} um of what no parameter explains (pose noise)")
     print(f"{figures['reduction']:.1f} times better than geometric compensation alone (goal {LEAST}); "
           f"{figures['ratio']:.2f} times the predicted uncertainty (goal at most {RATIO}); "
           f"{100 * figures['covered']:.0f} % of the poses within two of them")
     write_page(page, {"figures": figures, "reached": reached, "goals": (LEAST, RATIO), "days": Days(seed),
                       "unseen": UNSEEN, "sensors": SENSORS, "record": (record_hours, temperatures),
+                      "trained_poses": poses_of(results / "readings.csv"),
                       "course": (course.hours, errors, predicted), "same": (same.hours, same.displacements),
                       "factor": FACTOR, "every_min": 60 * EVERY_H, "lag_off": lag_off,
                       "correction_off": correction_off})

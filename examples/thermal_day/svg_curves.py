@@ -1,4 +1,4 @@
-"""Curves over the hours of a day as SVG, wide for a screen and narrow for a telephone; colours are those of the page."""
+"""Curves over the hours of a day as SVG, wide for a screen and narrow for a telephone, in the colours of the page."""
 from html import escape
 
 WIDE, NARROW = 860, 400
@@ -24,18 +24,22 @@ class Drawing:
     def __init__(self, width, first, low, high, label):
         self.width, self.height, self.first, self.low, self.high = width, HEIGHT[width], first, low, high
         self.left, self.right, self.top, self.bottom = 44, width - 8, 26, self.height - 36
-        self.parts = [f'<text class="axis-label" x="0" y="11">{escape(label)}</text>', '<g class="grid">']
+        self.parts = ['<g class="grid">']
         for value in ticks(low, high, 6):
             kind = ' class="zero"' if value == 0 else ""
             y = self.y(value)
             self.parts.append(f'<line{kind} x1="{self.left}" x2="{self.right}" y1="{y:.1f}" y2="{y:.1f}"/>')
         self.parts.append("</g>")
+        self.text("axis-label", 0, 11, label)
         for value in ticks(low, high, 6):
-            self.parts.append(f'<text class="tick end" x="{self.left - 6}" y="{self.y(value) + 4:.1f}">{text_of(value)}</text>')
+            self.text("tick end", self.left - 6, self.y(value) + 4, text_of(value))
         for hour in range(0, 25, 2 if width == WIDE else 4):
             place = {0: "", 24: " end"}.get(hour, " middle")
-            self.parts.append(f'<text class="tick{place}" x="{self.x(first + hour):.1f}" y="{self.bottom + 16}">{hour}</text>')
-        self.parts.append(f'<text class="axis-label end" x="{self.right}" y="{self.height - 4}">hour of the unseen day</text>')
+            self.text("tick" + place, self.x(first + hour), self.bottom + 16, hour)
+        self.text("axis-label end", self.right, self.height - 4, "hour of the unseen day")
+
+    def text(self, style, x, y, words):
+        self.parts.append(f'<text class="{style}" x="{x:.1f}" y="{y:.1f}">{escape(str(words))}</text>')
 
     def x(self, hour):
         return self.left + (self.right - self.left) * (hour - self.first) / 24

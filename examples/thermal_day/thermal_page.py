@@ -41,7 +41,8 @@ def style():
     for rule in dark:
         night = "@media screen and (prefers-color-scheme: dark) { " + rule.replace(DARK, ":root", 1).strip() + " }\n"
         text = text.replace(rule, night, 1)
-    colours = ":root .with-curves { --s1: var(--after); --s2: var(--before); --s3: #4a5fa5; --s4: #8a3d7c; --s5: #66741a; }\n"
+    colours = (":root .with-curves { --s1: var(--after); --s2: var(--before); --s3: #4a5fa5; --s4: #8a3d7c; "
+               "--s5: #66741a; }\n")
     night = ("@media screen and (prefers-color-scheme: dark) { :root .with-curves { --s3: #93a7f0; --s4: #d68fca; "
              "--s5: #b8c85c; } }\n")
     return text + colours + night + OWN_STYLE
@@ -78,7 +79,7 @@ def events(drawing, result):
             drawing.strip(job.start, job.end, job.speed)
 
 
-EVENTS = [("block door", "gate open"), ("block program", "program running, darker: faster spindle")]
+EVENTS = [("block door", "door open"), ("block program", "program running, darker: faster spindle")]
 
 
 def temperatures(result):
@@ -97,8 +98,8 @@ def temperatures(result):
 
     drawing = both(draw, result["unseen"][0], np.floor(low - 2), np.ceil(high + 1), "temperature / \u00b0C",
                    "Temperatures over the unseen day")
-    return figure(drawing, "What the ten thermometers record, with their noise, lag and last digit. The compensation in "
-                  "LinuxCNC sees these values and nothing else.",
+    return figure(drawing, "What the ten thermometers record, with their noise, lag and last digit. The compensation "
+                  "in LinuxCNC sees these values and nothing else.",
                   [(f"stroke {styles[name]}", name.replace("_", " ")) for name in names] + EVENTS)
 
 
@@ -111,7 +112,8 @@ def all_over_the_travel(result):
         for case in CASES:
             drawing.dots(hours, length[case], f"day of-case-{case}")
 
-    drawing = both(draw, result["unseen"][0], 0, 1.05 * max(of.max() for of in length.values()), "displacement / \u00b5m",
+    highest = 1.05 * max(of.max() for of in length.values())
+    drawing = both(draw, result["unseen"][0], 0, highest, "displacement / \u00b5m",
                    "Displacement of the functional point at poses all over the travel")
     keys = [(f"dot of-case-{case}", words) for case, words in CASES.items()]
     first = figure(drawing, f"Displacement of the functional point at {len(hours)} random poses, after the best fit of "
@@ -151,26 +153,27 @@ def same_place(result):
     return "".join(drawings)
 
 
+def row(words, mean, largest=""):
+    return f'<tr><th scope="row">{words}</th><td class="number">{mean}</td><td class="number">{largest}</td></tr>'
+
+
 def table(result):
     figures = result["figures"]
-    rows = "".join(f'<tr><th scope="row">{words}</th><td class="number">{um(figures[case])}</td>'
-                   f'<td class="number">{um(figures["largest"][case])}</td></tr>' for case, words in CASES.items())
-    rows += (f'<tr><th scope="row">predicted standard uncertainty</th><td class="number">{um(figures["predicted"])}</td>'
-             '<td class="number"></td></tr>'
-             f'<tr><th scope="row">of this: identified parameters</th><td class="number">{um(figures["parameters"])}</td>'
-             '<td class="number"></td></tr>'
-             f'<tr><th scope="row">of this: what no parameter explains</th><td class="number">{um(figures["pose"])}</td>'
-             '<td class="number"></td></tr>')
+    rows = "".join(row(words, um(figures[case]), um(figures["largest"][case])) for case, words in CASES.items())
+    rows += (row("predicted standard uncertainty", um(figures["predicted"]))
+             + row("of this: identified parameters", um(figures["parameters"]))
+             + row("of this: what no parameter explains", um(figures["pose"])))
     return ('<div class="scroll"><table class="piece-figures"><thead><tr><th scope="col">displacement of the functional '
-            'point, \u00b5m</th><th scope="col" class="number">root mean square</th><th scope="col" class="number">largest'
-            f"</th></tr></thead><tbody>{rows}</tbody></table></div>")
+            'point, \u00b5m</th><th scope="col" class="number">root mean square</th><th scope="col" class="number">'
+            f"largest</th></tr></thead><tbody>{rows}</tbody></table></div>")
 
 
 def body(result):
     figures, (least, ratio) = result["figures"], result["goals"]
-    verdict = (f"At hours that the identification has not seen, the tool is {figures['reduction']:.1f} times nearer to its "
-               f"place than with geometric compensation alone: {um(figures['thermal'])}\u202f\u00b5m instead of "
-               f"{um(figures['geometric'])}\u202f\u00b5m. That is {figures['ratio']:.2f} times the predicted uncertainty.")
+    verdict = (f"At hours that the identification has not seen, the tool is {figures['reduction']:.1f} times nearer to "
+               f"its place than with geometric compensation alone: {um(figures['thermal'])}\u202f\u00b5m instead of "
+               f"{um(figures['geometric'])}\u202f\u00b5m. That is {figures['ratio']:.2f} times the predicted "
+               "uncertainty.")
     if not result["reached"]:
         verdict += f" The goals, {least} times and at most {ratio}, are missed."
     tiles = (tile("Before", um(figures["before"]), "\u00b5m", "nothing compensated")
@@ -183,39 +186,42 @@ def body(result):
 <a href="#temperatures">Temperatures</a><a href="#place">One place</a><a href="#figures">Figures</a>
 <a href="#how">How</a></nav></div>
 <main><div class="overview"><h1>A thermal day of a mill, in LinuxCNC</h1>
-<p class="subtitle">A simulated machine with hidden geometric and thermal errors, identified over three days and compensated
-on a fourth one with other programs, other weather and other open gates</p>
+<p class="subtitle">A simulated machine with hidden geometric and thermal errors, identified over three days and
+compensated on another one with other programs, other weather and other open doors</p>
 <p class="verdict">{verdict}</p><div class="tiles small">{tiles}</div>
 <p class="note">Root mean square of the displacement of the functional point at {figures['poses']} random poses over 24
 hours, after the best fit of the workpiece datum.</p></div>
-<section id="day"><h2>The unseen day</h2><p class="lead">Joints are those that a real LinuxCNC commanded, with the compensation
-in its kinematics. Where the tool then is, the hidden machine says.</p>{first}{second}</section>
+<section id="day"><h2>The unseen day</h2><p class="lead">Joints are those that a real LinuxCNC commanded, with the
+compensation in its kinematics. Where the tool then is, the hidden machine says.</p>{first}{second}</section>
 <section id="temperatures"><h2>Temperatures</h2>{temperatures(result)}</section>
 <section id="place"><h2>One place, all day</h2><p class="lead">The tool over the middle of the table, every
 {result['every_min']:.0f} minutes.</p>{same_place(result)}</section>
 <section id="figures"><h2>Figures</h2>{table(result)}
-<p class="note">The predicted uncertainty is that of the identification: the covariance of its parameters, and the pose noise
-that it estimated from the training days by restricted maximum likelihood, which is what the model lacks.</p></section>
+<p class="note">The predicted uncertainty is that of the identification: the covariance of its parameters, and the pose
+noise that it estimated from the training days by restricted maximum likelihood, which is what the model lacks.</p>
+</section>
 <section id="how"><h2>How this came about</h2><ul class="plain">
-<li>Hidden: heat in rods and plates by finite volumes, losses of spindle and screws, hall air with open gates; the machine
-bends and grows by its temperature fields. The identified model has none of this: error terms times measured temperatures and
-first-order lags.</li>
-<li>Identified from a laser tracker on the table, 1296 poses over three days, and from ten thermometers. The geometric errors
-alone come from the same readings.</li>
+<li>Hidden: heat in rods and plates by finite volumes, losses of spindle and screws, hall air with open doors. The
+machine bends and grows by its temperature fields. The identified model has none of this: it is error terms times
+measured temperatures and first-order lags.</li>
+<li>Identified from a laser tracker on the table, {result['trained_poses']} poses over three days, and from ten
+thermometers. The geometric errors alone come from the same readings.</li>
 <li>Both compensations were frozen (abbe compensate freeze) and ran in a real LinuxCNC. The day took
-{24 * 60 / (result['factor'] / 60):.0f}\u202fs there: time constants and rates were divided by {result['factor']}, and every pose
-was judged at the hour at which it was reached.</li>
-<li>Checked: lags in LinuxCNC are within {result['lag_off']:.2f}\u202fK of the solution of their equations, corrections within
-{result['correction_off']:.3f}\u202f\u00b5m of a second computation from the identified errors.</li></ul></section></main>
+{24 * 3600 / result['factor']:.0f}\u202fs there: time constants were divided by {result['factor']}, rates multiplied by
+it, and every pose was judged at the hour at which it was reached.</li>
+<li>Checked: lags in LinuxCNC are within {result['lag_off']:.2f}\u202fK of the solution of their equations, corrections
+within {1e3 * result['correction_off']:.0f}\u202fnm of a second computation from the identified errors.</li></ul>
+</section></main>
 <footer>Equations, sources and limits: docs/thermal-day.md</footer>"""
 
 
 def write_page(path, result):
-    page = ('<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-            '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; style-src \'unsafe-inline\'; '
-            'img-src data:">\n<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+    head = ('<meta charset="utf-8">\n<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; '
+            'style-src \'unsafe-inline\'; img-src data:">\n'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
             '<meta name="color-scheme" content="light dark">\n<title>A thermal day of a mill</title>\n'
-            f'<link rel="icon" href="data:,">\n<style>{style()}</style>\n</head>\n<body>\n{body(result)}\n</body>\n</html>\n')
+            f'<link rel="icon" href="data:,">\n<style>{style()}</style>\n')
+    page = f'<!doctype html>\n<html lang="en">\n<head>\n{head}</head>\n<body>\n{body(result)}\n</body>\n</html>\n'
     unfinished = path.with_name(f".{path.name}.unfinished")
     unfinished.write_text(page, encoding="utf-8")
     os.replace(unfinished, path)
