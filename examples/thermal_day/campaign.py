@@ -20,7 +20,7 @@ CYCLE_H, POSES = 1 / 6, 3  # every ten minutes the tracker measures three poses
 READING_S = 4
 REFLECTORS = {"S1": (60, 0, -120), "S2": (-30, 55, -60), "S3": (-40, -50, -90)}  # mm from the gauge point
 STATION_MM, STATION_DEG = (-420.0, -260.0, 350.0), (0.02, -0.03, 25.0)  # on the table, workpiece frame
-RANGE_MM, RANGE_PER_MM, ANGLE = 2e-3, 0.5e-6, 2 / 3600  # standard deviations: mm, mm/mm, degrees
+RANGE_MM, RANGE_PER_MM, ANGLE = 2e-3, 0.5e-6, 2 / 3600  # standard deviations: mm, mm/mm; degrees across the beam
 
 
 def random_commands(count, generator):
@@ -39,9 +39,10 @@ def tracker_readings(machine, generator):
         points = machine.point_in_workpiece(hours, commands, np.array(offset, float)) - STATION_MM
         x, y, z = (points @ rotation(np.radians([STATION_DEG]))[0]).T
         distance = np.sqrt(x * x + y * y + z * z)
-        distance += generator.normal(size=x.size) * np.hypot(RANGE_MM, RANGE_PER_MM * distance)
-        azimuth = np.degrees(np.arctan2(y, x)) + ANGLE * generator.normal(size=x.size)
-        elevation = np.degrees(np.arctan2(z, np.hypot(x, y))) + ANGLE * generator.normal(size=x.size)
+        level = np.hypot(x, y)
+        azimuth = np.degrees(np.arctan2(y, x)) + ANGLE * distance / level * generator.normal(size=x.size)
+        elevation = np.degrees(np.arctan2(z, level)) + ANGLE * generator.normal(size=x.size)
+        distance += (RANGE_MM + RANGE_PER_MM * distance) * generator.normal(size=x.size)
         rows += [(*c, d, a, e, 3600 * h, name)
                  for c, d, a, e, h in zip(commands, distance, azimuth, elevation, hours)]
     return sorted(rows, key=lambda row: row[6])

@@ -42,7 +42,7 @@ class Identified:
         self.values = np.array(self.values)
         self.covariance = self.read_covariance(folder / document["covariance"], names)
         summary = json.loads((folder / "summary.json").read_text())
-        self.pose_variance = 1e-6 * summary["identification"]["pose_noise_um"] ** 2
+        self.pose_variance = 1e-6 * summary["reading_variances"]["pose_noise_um"] ** 2
 
     @staticmethod
     def read_covariance(path, names):
