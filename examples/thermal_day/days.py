@@ -10,7 +10,7 @@ LEAD, TRAINED, UNSEEN = (0, 24), (24, 96), (96, 120)  # h: records only; reading
 
 @dataclass
 class Job:
-    """A program: from, to (h), speed of the spindle (part of the largest), mean feed (m/min) and stroke (mm) of X Y Z."""
+    """A program: from, to (h), speed of the spindle (part of the largest), mean feed (m/min), stroke (mm) of X Y Z."""
     start: float
     end: float
     speed: float

@@ -33,6 +33,18 @@ def at_once(operation, pins):
     write("reached.txt", rows)
 
 
+def settled_row(operation, pins, job, hour):
+    """Hour, joints, um behind, states ok, lags, channels as used: no value of a channel changed just before."""
+    while True:
+        used = [pins.get(f"state-{name}-used") for name in job["channels"]]
+        operation.cycles(SETTLED_CYCLES)
+        begin, at = hour(), joints(pins)
+        row = [(begin + hour()) / 2, *at, pins.get("states-behind-um"), pins.get("states-ok"),
+               *(pins.get(f"lag-{name}") for name in job["lags"])]
+        if used == [pins.get(f"state-{name}-used") for name in job["channels"]]:
+            return row + used
+
+
 def over_the_day(operation, pins, job, say):
     """Rows: hour, part compensated, nominal X Y Z, joints X Y Z, um behind, states ok, lags, channels as used."""
     pins.enable(1)
@@ -51,14 +63,9 @@ def over_the_day(operation, pins, job, say):
         operation.mdi("G0 " + pins.words_of(world, OFFSET))
         operation.until(lambda world=world: max(abs(hal.get_value(name) - place)
                                                 for name, place in zip(pins.world, world)) < 1e-6, f"world at {world}")
-        operation.cycles(SETTLED_CYCLES)
-        begin = hour()
-        row = [*world, *joints(pins)]
-        end = hour()
-        late = max(late, end - asked)
-        rows.append([(begin + end) / 2, pins.get("enabled"), *row, pins.get("states-behind-um"), pins.get("states-ok"),
-                     *(pins.get(f"lag-{name}") for name in job["lags"]),
-                     *(pins.get(f"state-{name}-used") for name in job["channels"])])
+        row = settled_row(operation, pins, job, hour)
+        late = max(late, row[0] - asked)
+        rows.append([row[0], pins.get("enabled"), *world, *row[1:]])
         if pins.get("status") < 0 or pins.get("outside-map") or pins.get("outside-tool"):
             raise Stopped(f"the module is not sure of {world}")
     write("reached.txt", rows)

@@ -28,7 +28,7 @@ class RodTest(unittest.TestCase):
         self.assertAlmostEqual(stored / (30 * 5000), 1, delta=1e-12)
 
     def test_a_fin_reaches_its_steady_state(self):
-        # Heat Q into the end of a fin with an insulated other end: Q cosh(m (L - x)) / (k A m sinh(m L)); Incropera 3.6.
+        # Heat Q into one end of a fin, the other insulated: Q cosh(m (L - x)) / (k A m sinh(m L)); Incropera 3.6.
         length, area, perimeter, convection, heat = 0.8, 1.2e-3, 0.12, 15.0, 20.0
         rod = Rod(length, area, perimeter, 160, STEEL, 20)
         watts = np.zeros(160)

@@ -12,6 +12,7 @@ import sys
 
 import numpy as np
 from campaign import random_commands
+from day_figures import read_lags
 from days import TRAVEL, UNSEEN
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -21,7 +22,6 @@ from module_run import headless  # noqa: E402
 
 DISPLAY = "drive_day.py"
 FACTOR = 600  # a minute of the day takes 0.1 s; time constants and rates are scaled with it
-LAGS = ("nut_x_slow", "nut_y_slow", "head_slow", "ambient_slow")
 EVERY_H = 1 / 12  # two poses: one anywhere in the travel, and one that is the same all day
 SAME_PLACE = (380.0, 220.0, -230.0)
 SPARE_MM = 1.0
@@ -49,7 +49,7 @@ def run(folder, module, model, job, lines=(), settings=()):
     return (folder / "reached.txt").read_text()
 
 
-def thermal_run(folder, module, record):
+def thermal_run(folder, module, record, lags):
     """The temperatures come from a program beside the control, and all rates are those of a machine times FACTOR."""
     with open(record, encoding="ascii") as file:
         names = [name.removesuffix("_degC") for name in file.readline().strip().split(",")[1:]]
@@ -58,7 +58,7 @@ def thermal_run(folder, module, record):
              *(f"net degC-{name} thermometers.{name} => {module}.state-{name}" for name in names)]
     settings = [f"states-hold-seconds {10 / FACTOR}", f"states-ramp-per-second {0.01 * FACTOR}",
                 f"states-rate-um-per-second {10 * FACTOR}"]
-    job = {"factor": FACTOR, "first_h": first_min / 60, "last_h": UNSEEN[1], "lags": LAGS, "channels": names}
+    job = {"factor": FACTOR, "first_h": first_min / 60, "last_h": UNSEEN[1], "lags": lags, "channels": names}
     return run(folder, module, "thermal.abbec", job, lines, settings)
 
 
@@ -70,7 +70,8 @@ def main():
         shutil.copy(HERE / "thermometers", folder)
         os.chmod(folder / "thermometers", 0o755)
         (results / "reached-geometric.txt").write_text(run(folder, module, "geometric.abbec", {}))
-        (results / "reached-thermal.txt").write_text(thermal_run(folder, module, results / "unseen.csv"))
+        lags = list(read_lags(results / "day-mill.machine.toml"))
+        (results / "reached-thermal.txt").write_text(thermal_run(folder, module, results / "unseen.csv", lags))
 
 
 if __name__ == "__main__":

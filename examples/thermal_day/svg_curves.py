@@ -1,7 +1,7 @@
 """Curves over the hours of a day as SVG, wide for a screen and narrow for a telephone, in the colours of the page."""
 from html import escape
 
-WIDE, NARROW = 860, 400
+WIDE, NARROW = 860, 340
 HEIGHT = {WIDE: 300, NARROW: 230}
 
 
@@ -23,15 +23,15 @@ class Drawing:
 
     def __init__(self, width, first, low, high, label):
         self.width, self.height, self.first, self.low, self.high = width, HEIGHT[width], first, low, high
-        self.left, self.right, self.top, self.bottom = 44, width - 8, 26, self.height - 36
+        self.left, self.right, self.top, self.bottom = 40, width - 8, 32, self.height - 36
         self.parts = ['<g class="grid">']
-        for value in ticks(low, high, 6):
+        for value in ticks(low, high, 7):
             kind = ' class="zero"' if value == 0 else ""
             y = self.y(value)
             self.parts.append(f'<line{kind} x1="{self.left}" x2="{self.right}" y1="{y:.1f}" y2="{y:.1f}"/>')
         self.parts.append("</g>")
         self.text("axis-label", 0, 11, label)
-        for value in ticks(low, high, 6):
+        for value in ticks(low, high, 7):
             self.text("tick end", self.left - 6, self.y(value) + 4, text_of(value))
         for hour in range(0, 25, 2 if width == WIDE else 4):
             place = {0: "", 24: " end"}.get(hour, " middle")
@@ -68,10 +68,10 @@ class Drawing:
                           f'height="{self.bottom - self.top}"/>')
 
     def strip(self, start, end, strength):
-        """A program, along the lower edge; the darker the faster the spindle."""
+        """A program, above the curves; the stronger the faster the spindle."""
         x, width = self.x(start), self.x(end) - self.x(start)
         self.parts.append(f'<rect class="program" style="fill-opacity:{0.15 + 0.75 * strength:.2f}" x="{x:.1f}" '
-                          f'y="{self.bottom - 7}" width="{max(width - 0.8, 1):.1f}" height="7"/>')
+                          f'y="{self.top - 8}" width="{max(width - 0.8, 1):.1f}" height="7"/>')
 
     def svg(self, style, description):
         return (f'<svg class="{style}" viewBox="0 0 {self.width} {self.height}" role="img" '

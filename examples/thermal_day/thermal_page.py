@@ -65,7 +65,7 @@ def legend(entries):
 
 
 def figure(drawing, caption, entries):
-    return (f'{legend(entries)}<figure class="made in-two large with-curves"><div class="drawing">{drawing}</div>'
+    return (f'<figure class="made in-two large with-curves">{legend(entries)}<div class="drawing">{drawing}</div>'
             f"<figcaption>{caption}</figcaption></figure>")
 
 
@@ -79,7 +79,7 @@ def events(drawing, result):
             drawing.strip(job.start, job.end, job.speed)
 
 
-EVENTS = [("block door", "door open"), ("block program", "program running, darker: faster spindle")]
+EVENTS = [("block door", "door open"), ("block program", "program running, stronger: faster spindle")]
 
 
 def temperatures(result):
@@ -163,8 +163,9 @@ def table(result):
     rows += (row("predicted standard uncertainty", um(figures["predicted"]))
              + row("of this: identified parameters", um(figures["parameters"]))
              + row("of this: what no parameter explains", um(figures["pose"])))
-    return ('<div class="scroll"><table class="piece-figures"><thead><tr><th scope="col">displacement of the functional '
-            'point, \u00b5m</th><th scope="col" class="number">root mean square</th><th scope="col" class="number">'
+    return ('<div class="scroll"><table class="piece-figures"><thead><tr><th scope="col">displacement of the '
+            'functional point, \u00b5m</th><th scope="col" class="number">root mean square</th>'
+            '<th scope="col" class="number">'
             f"largest</th></tr></thead><tbody>{rows}</tbody></table></div>")
 
 
@@ -174,7 +175,7 @@ def body(result):
                f"its place than with geometric compensation alone: {um(figures['thermal'])}\u202f\u00b5m instead of "
                f"{um(figures['geometric'])}\u202f\u00b5m. That is {figures['ratio']:.2f} times the predicted "
                "uncertainty.")
-    if not result["reached"]:
+    if not figures["reached"]:
         verdict += f" The goals, {least} times and at most {ratio}, are missed."
     tiles = (tile("Before", um(figures["before"]), "\u00b5m", "nothing compensated")
              + tile("Geometric", um(figures["geometric"]), "\u00b5m", "same readings, no thermometers", "before")
