@@ -179,7 +179,7 @@ def body(result):
         verdict += f" The goals, {least} times and at most {ratio}, are missed."
     tiles = (tile("Before", um(figures["before"]), "\u00b5m", "nothing compensated")
              + tile("Geometric", um(figures["geometric"]), "\u00b5m", "same readings, no thermometers", "before")
-             + tile("Geometric and thermal", um(figures["thermal"]), "\u00b5m", "ten thermometers, four lags", "after")
+             + tile("Geometric and thermal", um(figures["thermal"]), "\u00b5m", "ten thermometers, six lags", "after")
              + tile("Predicted", um(figures["predicted"]), "\u00b5m", "standard uncertainty, before the day")
              + tile("Better", f"{figures['reduction']:.1f}", "times", f"goal: {least}"))
     first, second = all_over_the_travel(result)
