@@ -19,7 +19,7 @@ from identified import Identified
 from in_linuxcnc import EVERY_H, FACTOR, SAME_PLACE
 from thermal_page import write_page
 
-LARGEST_LAG_K, LARGEST_CORRECTION_UM = 0.2, 0.2  # differences of LinuxCNC from the equations
+LARGEST_LAG_K, LARGEST_CORRECTION_UM = 0.5, 0.2  # differences of LinuxCNC from the equations
 
 
 def read_runs(results):
