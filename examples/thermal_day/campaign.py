@@ -65,7 +65,7 @@ def write_temperatures(path, minutes, values):
 def main():
     folder, seed = pathlib.Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
     generator = np.random.default_rng([seed, 2])
-    hours, sensors, deformations, inside = simulate(Days(seed))
+    hours, sensors, deformations = simulate(Days(seed))
     machine = HiddenPoses(hours, deformations, Geometry(seed))
     seen = sensors + NOISE_K * generator.normal(size=sensors.shape)
     seen = LEAST_DIGIT_K * np.round(seen / LEAST_DIGIT_K)
@@ -75,7 +75,7 @@ def main():
         write_temperatures(folder / f"{name}.csv", minutes[of], seen[of])
     readings = tracker_readings(machine, generator)
     write_readings(folder / "readings.csv", readings)
-    np.savez(folder / "truth.npz", hours=hours, deformations=deformations, inside=inside, seed=seed)
+    np.savez(folder / "truth.npz", hours=hours, deformations=deformations, seed=seed)
     print(f"{len(readings)} readings on {len(readings) // 3} poses in {TRAINED[1] - TRAINED[0]} h; {len(SENSORS)} "
           "thermometers, a value a minute")
 

@@ -61,8 +61,8 @@ class HiddenMill:
             self.last_stroke = job.stroke
         warmth = sum(screw.advance(seconds, feed, stroke, self.inside if axis != "Z" else 0.5 * (near + far))
                      for (axis, screw), feed, stroke in zip(self.screws.items(), feeds, self.last_stroke))
-        lost = self.advance_spindle(seconds, speed, near, draught)
-        self.advance_structure(seconds, speed, feeds, near, far, draught)
+        lost, into_column = self.advance_spindle(seconds, speed, near, draught)
+        self.advance_structure(seconds, speed, feeds, into_column, near, far, draught)
         cutting = 160 * speed if job else 0.0
         exchange = (0.25 * lost + 0.3 * warmth + cutting + 40 * draught * (near - self.inside)
                     + 8 * (self.bed.temperature[:, -1].mean() - self.inside))
@@ -70,8 +70,11 @@ class HiddenMill:
         self.advance_sensors(seconds, far)
 
     def advance_spindle(self, seconds, speed, air, draught):
-        """Losses of bearings and motor, W: friction grows faster than speed (Harris, Rolling bearing analysis, 10)."""
-        front, motor = 19 * speed + 52 * speed**1.67, 30 * speed + 45 * speed**1.67
+        """Spindle and head. Losses of bearings and motor, W, and the heat that goes into each cell of the column.
+
+        Viscous friction grows with the power 5/3 of the speed: docs/thermal-day.md.
+        """
+        front, motor = 19 * speed + 52 * speed**(5 / 3), 30 * speed + 45 * speed**(5 / 3)
         rear = 0.45 * front
         watts = np.zeros(20)
         watts[14:18] += front / 4
@@ -87,14 +90,14 @@ class HiddenMill:
         rows = np.abs(self.column.along - middle) < 0.18
         to_column = 22.0 * (self.head.temperature[0] - self.column.temperature[rows, 0].mean())
         head[0] -= to_column
-        self.into_column = np.zeros(self.column.temperature.shape)
-        self.into_column[rows, 0] = to_column / rows.sum()
+        into_column = np.zeros(self.column.temperature.shape)
+        into_column[rows, 0] = to_column / rows.sum()
         self.head.advance(seconds, head, 7 * draught, air)
-        return front + rear + motor
+        return front + rear + motor, into_column
 
-    def advance_structure(self, seconds, speed, feeds, near, far, draught):
-        self.into_column[-3:, 0] += (2.0 * feeds[2] + 12 * (feeds[2] > 0)) / 3  # motor and bearing of Z
-        self.column.advance(seconds, self.into_column, (7 * draught, 6, 6 * draught, 3, 6),
+    def advance_structure(self, seconds, speed, feeds, into_column, near, far, draught):
+        into_column[-3:, 0] += (2.0 * feeds[2] + 12 * (feeds[2] > 0)) / 3  # motor and bearing of Z
+        self.column.advance(seconds, into_column, (7 * draught, 6, 6 * draught, 3, 6),
                             (0.6 * near + 0.4 * self.inside, far, 0.5 * (near + far), FLOOR, far + 0.8))
         into_bed = np.zeros(self.bed.temperature.shape)
         into_bed[6:16, -1] += 3.0 * feeds[1] / 10  # guides of Y
@@ -127,8 +130,8 @@ class HiddenMill:
 
 
 def simulate(days):
-    """@return  by the minute of all days: minutes (h), true sensor values (a row per minute), deformations, air"""
-    mill, times, sensors, deformations, air = HiddenMill(), [], [], [], []
+    """@return  for every minute of all days: time (h), sensor values without noise, deformation"""
+    mill, times, sensors, deformations = HiddenMill(), [], [], []
     steps = round(DAYS * 24 * 3600 / STEP_S)
     for step in range(steps + 1):
         hour = step * STEP_S / 3600
@@ -136,6 +139,5 @@ def simulate(days):
             times.append(hour)
             sensors.append(list(mill.sensor.values()))
             deformations.append(mill.deformation())
-            air.append(mill.inside)
         mill.advance(hour, days, STEP_S)
-    return np.array(times), np.array(sensors), np.array(deformations), np.array(air)
+    return np.array(times), np.array(sensors), np.array(deformations)

@@ -11,7 +11,8 @@ import pathlib
 import sys
 
 import numpy as np
-from day_figures import LEAST, RATIO, REFERENCE, Course, factors_at, figures_of, read_lags, read_temperatures, read_truth
+from day_figures import (LEAST, RATIO, REFERENCE, Course, factors_at, figures_of, read_lags, read_temperatures,
+                         read_truth)
 from days import TRAVEL, UNSEEN, Days
 from hidden_mill import SENSORS
 from hidden_pose import TOOL
