@@ -58,6 +58,7 @@
 #include "abbe/errors/poses.h"
 #include "abbe/instruments/observations.h"
 #include "abbe/instruments/reading_mistakes.h"
+#include "abbe/instruments/setup_drift.h"
 #include "abbe/instruments/setup_quantity.h"
 
 namespace abbe {
@@ -87,6 +88,7 @@ struct InstrumentReadings {
   std::vector<std::vector<double>> covariance;
   std::vector<double> time_s;           ///< [count] or empty
   std::vector<std::string> point_name;  ///< [count] name of the point in the input, or empty: it gives none
+  std::shared_ptr<const SetupDrift> drift{};  ///< null: the set-up stands still; else `time_s` is needed
 
   std::size_t count() const { return item.size(); }
   /// Adds one reading to a plan (nothing measured yet).

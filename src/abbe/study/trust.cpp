@@ -1,3 +1,4 @@
+#include "abbe/study/state_ranges.h"
 #include "abbe/study/trust.h"
 
 #include <fmt/format.h>
@@ -135,6 +136,9 @@ ErrorsFile identified_errors_file(const Study& study, const StudyResult& result)
   for (const Distrust& reason : result.distrusted) file.distrusted.push_back(reason.text);
   file.misfit_accepted = result.misfit_accepted && !result.distrusted.empty();
   file.warnings = study_warnings(study, result);
+  file.covered = covered_states(study, result);
+  file.covered_time_s = covered_time_s(result);
+  file.ageing = {study.identification->ageing_length, study.identification->ageing_angle};
   return file;
 }
 

@@ -32,6 +32,7 @@ struct TrackerSimulationOptions {
   bool line_of_sight = true;     ///< leave out what station limits and reflector cones do not allow
   double interval_s = 2;         ///< time between readings
   std::vector<double> time_s{};  ///< [poses] instead, where poses have times
+  std::shared_ptr<const SetupDrift> drift{};  ///< of the stations, with its true values; `time_s` is then needed
   int threads = 0;               ///< 0: all
   std::function<void(std::size_t done, std::size_t total)> progress;  ///< in poses; called from one thread at a time
 };

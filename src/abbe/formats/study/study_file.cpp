@@ -42,6 +42,8 @@ Simulation read_simulation(TomlTable& table, const std::filesystem::path& folder
     table.fail("", "the true errors are missing", "errors = \"file.errors.toml\" or [simulate.generator]");
   }
   simulation.noise = table.boolean_or("noise", true);
+  simulation.interval_s = table.number_or("interval", Quantity::time, 2);
+  if (!(simulation.interval_s > 0)) table.fail_quantity("interval", Quantity::time, "is not above zero", "a time");
   if (auto outliers = table.optional_table("outliers")) {
     simulation.outliers.fraction = outliers->size_or("fraction", Quantity::dimensionless, 0);
     if (simulation.outliers.fraction > 0.5) outliers->fail("fraction", "is above one half", "a fraction from 0 to 0.5");

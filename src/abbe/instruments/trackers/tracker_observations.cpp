@@ -39,7 +39,7 @@ struct TrackerScratch {
   std::vector<const double*> state;
   std::vector<double> jacobian;     ///< compact columns of one pair of bodies
   std::vector<double> by_position;  ///< [axes][3][members]
-  double start[3][kBlock], seen[3][kBlock], gathered[3][kBlock], trig[4][kBlock], weight[6][kBlock];
+  double start[3][kBlock], seen[3][kBlock], unmoved[3][kBlock], gathered[3][kBlock], trig[4][kBlock], weight[6][kBlock];
   double residual[3][kBlock], force[3][3][kBlock], by_start[3][3][kBlock];
   std::uint16_t station[kBlock], reflector[kBlock];
 };
@@ -74,6 +74,7 @@ struct TrackerObservations::Implementation {
   Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();
   ReversalShift reversal;
   GivenStates given_states;
+  ReadingDrift drift;
 
   std::uint8_t pair_at(std::size_t reading) const {
     return pair_of[readings.station[reading] * given.reflectors.size() + readings.reflector[reading]];
@@ -130,6 +131,7 @@ struct TrackerObservations::Implementation {
       starts[r] = offsets[r];
       if (given.reflectors[r].body == Body::tool) starts[r] += tool_offset_error;
     }
+    drift.set(setup.subspan(roles.size()));
   }
 
   void find_members(std::size_t first, std::size_t count, std::size_t pair, Members& members) const;
@@ -141,7 +143,42 @@ struct TrackerObservations::Implementation {
   void reversal_columns(const Members& members, std::size_t first, std::span<const std::size_t> machine_parameters,
                         const TrackerScratch& s, double* target, std::size_t stride) const;
   void setup_column(const UnknownRole& role, std::size_t count, const TrackerScratch& s, double* column) const;
+  /// The reflectors as stations see them that have moved.
+  void move(const Members& members, std::size_t first, TrackerScratch& s) const;
+  /// Columns of the drift, and forces back in the frame of the body.
+  void take_drift(const Members& members, std::size_t first, std::span<const std::size_t> setup_parameters,
+                  double* columns, std::size_t stride, TrackerScratch& s) const;
 };
+
+void TrackerObservations::Implementation::move(const Members& members, std::size_t first, TrackerScratch& s) const {
+  for (std::size_t k = 0; k < members.count; ++k) {
+    const Eigen::Vector3d seen =
+        drift.seen(first + members.at[k], {s.unmoved[0][k], s.unmoved[1][k], s.unmoved[2][k]});
+    for (int c = 0; c < 3; ++c) s.seen[c][k] = seen[c];
+  }
+}
+
+void TrackerObservations::Implementation::take_drift(const Members& members, std::size_t first,
+                                                     std::span<const std::size_t> setup_parameters, double* columns,
+                                                     std::size_t stride, TrackerScratch& s) const {
+  for (std::size_t k = 0; k < members.count; ++k) {
+    const std::size_t reading = first + members.at[k];
+    const Eigen::Vector3d seen(s.seen[0][k], s.seen[1][k], s.seen[2][k]);
+    const Eigen::Matrix3d turn = drift.turn(reading);
+    for (std::size_t row = 0; row < 3; ++row) {
+      const Eigen::Vector3d force(s.force[row][0][k], s.force[row][1][k], s.force[row][2][k]);
+      const Eigen::Matrix<double, 6, 1> slopes = drift.slopes(reading, seen, force, Eigen::Vector3d::Zero());
+      for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
+        if (setup_parameters[i] < roles.size()) continue;
+        const std::size_t unknown = setup_parameters[i] - roles.size();
+        columns[i * stride + row * members.count + k] =
+            drift.weight(unknown, reading) * slopes[drift.component_of(unknown)];
+      }
+      const Eigen::Vector3d back = turn * force;
+      for (int c = 0; c < 3; ++c) s.force[row][c][k] = back[c];
+    }
+  }
+}
 
 void TrackerObservations::Implementation::find_members(std::size_t first, std::size_t count, std::size_t pair,
                                                        Members& members) const {
@@ -266,8 +303,13 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
   const std::size_t n = members.count;
   const PositionArrays positions{s.axis, n, s.state};
   const ConstPointArrays start{s.start[0], s.start[1], s.start[2]};
-  const ConstPointArrays seen{s.seen[0], s.seen[1], s.seen[2]};
+  const auto& of_plan = drift.acts() ? s.unmoved : s.seen;
+  const ConstPointArrays seen{of_plan[0], of_plan[1], of_plan[2]};
   pair.plan.transform(positions, start, {s.seen[0], s.seen[1], s.seen[2]});
+  if (drift.acts()) {
+    for (int c = 0; c < 3; ++c) std::copy_n(s.seen[c], n, s.unmoved[c]);
+    move(members, first, s);
+  }
   residuals_of_runs(members, jacobian != nullptr, s);
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t k = 0; k < n; ++k) residuals[row * count + members.at[k]] = s.residual[row][k];
@@ -282,9 +324,17 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
     if (s.jacobian.size() < columns * target_stride) s.jacobian.resize(columns * target_stride);
     target = s.jacobian.data();
   }
-  const bool by_start_wanted = std::any_of(setup_parameters.begin(), setup_parameters.end(), [&](std::size_t i) {
-    return roles[i].kind == UnknownKind::reflector_offset;
-  });
+  const auto is_of_reflector = [&](std::size_t i) {
+    return i < roles.size() && roles[i].kind == UnknownKind::reflector_offset;
+  };
+  double* const setup_target = target + machine_parameters.size() * target_stride;
+  // Of a station the columns are in its own frame, those of everything else in the frame of the body.
+  for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
+    if (setup_parameters[i] >= roles.size() || is_of_reflector(setup_parameters[i])) continue;
+    setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target_stride);
+  }
+  if (drift.acts()) take_drift(members, first, setup_parameters, setup_target, target_stride, s);
+  const bool by_start_wanted = std::any_of(setup_parameters.begin(), setup_parameters.end(), is_of_reflector);
   RowArrays rows[3];
   PointArrays by_start[3];
   for (int row = 0; row < 3; ++row) {
@@ -308,7 +358,8 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
     }
   }
   for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
-    setup_column(roles[setup_parameters[i]], n, s, target + (machine_parameters.size() + i) * target_stride);
+    if (!is_of_reflector(setup_parameters[i])) continue;
+    setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target_stride);
   }
   if (members.whole_block) return;
   for (std::size_t column = 0; column < columns; ++column) {
@@ -364,6 +415,12 @@ TrackerObservations::TrackerObservations(const Machine& machine, const ErrorSet&
   for (const Reflector& reflector : own.given.reflectors) own.offsets.push_back(reflector.offset);
   own.starts = own.offsets;
   own.name_unknowns();
+  if (own.readings.drift != nullptr) {
+    own.drift = ReadingDrift(own.readings.drift, own.readings.time_s, own.readings.station);
+    for (SetupUnknown& unknown : own.readings.drift->unknowns()) own.unknowns.push_back(std::move(unknown));
+    const std::vector<double>& values = own.readings.drift->values;
+    own.values.insert(own.values.end(), values.begin(), values.end());
+  }
   const std::vector<double> start_values = own.values;
   own.update_setup(start_values);
 }
@@ -437,7 +494,12 @@ bool TrackerObservations::displacement_rows(std::size_t first, std::size_t count
     own.load(members, first, s);
     own.pairs[pair].plan.transform({s.axis, members.count, s.state}, {s.start[0], s.start[1], s.start[2]},
                                    {s.seen[0], s.seen[1], s.seen[2]});
+    if (own.drift.acts()) {
+      for (int c = 0; c < 3; ++c) std::copy_n(s.seen[c], members.count, s.unmoved[c]);
+      own.move(members, first, s);
+    }
     own.residuals_of_runs(members, true, s);
+    if (own.drift.acts()) own.take_drift(members, first, {}, nullptr, 0, s);
     for (std::size_t direction = 0; direction < 3; ++direction) {
       for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t k = 0; k < members.count; ++k) {
@@ -477,6 +539,7 @@ Eigen::Vector3d TrackerObservations::distance(std::size_t reading) const {
   const Eigen::Vector3d& start = own.starts[own.readings.reflector[reading]];
   own.pairs[own.pair_at(reading)].plan.transform({s.axis, 1, s.state}, {&start[0], &start[1], &start[2]},
                                                  {&seen[0], &seen[1], &seen[2]});
+  if (own.drift.acts()) seen = own.drift.seen(reading, seen);
   const StationPose& station = own.stations[own.readings.station[reading]];
   return own.readings.point(reading) - station.body_from_tracker.transpose() * (seen - station.origin);
 }
