@@ -93,12 +93,11 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
   command->add_option("--tool-length-mm", arguments->lengths, "Tool lengths that are tried; others are flagged")
       ->expected(2)
       ->capture_default_str();
-  command
-      ->add_option("--state-range", arguments->state_ranges,
-                   "NAME=FROM:TO: values of a measured state, in its unit, for which its errors were identified; "
-                   "others are held at the end and then not compensated (default for temperatures: 5 K below to 10 K "
-                   "above the reference)")
-      ->expected(1, -1);
+  command->add_option(
+      "--state-range", arguments->state_ranges,
+      "NAME=FROM:TO: values of a measured state, in its unit, for which its errors were identified; "
+      "others are held at the end and then not compensated (default for temperatures: 5 K below to 10 K "
+      "above the reference)");
   command->add_option("--limit-um", arguments->limit_um, "Refuse if the tool would be corrected by more than this");
   command
       ->add_option("--largest-turn-deg", arguments->largest_turn_deg,

@@ -8,6 +8,7 @@ namespace abbe::python {
 namespace nb = nanobind;
 
 void bind_input_error(nb::module_& module);
+void bind_states(nb::module_& module);
 void bind_machine(nb::module_& module);
 void bind_errors(nb::module_& module);
 void bind_poses(nb::module_& module);

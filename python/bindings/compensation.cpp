@@ -9,6 +9,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "bindings/arrays.h"
 #include "bindings/machine_errors.h"
+#include "bindings/states.h"
 
 namespace abbe::python {
 namespace {
@@ -45,6 +46,7 @@ MachineInverse make_inverse(const MachineErrors& errors, const std::string& targ
       throw nb::key_error(fmt::format("no axis '{}' in {}", name, errors.machine.chain()).c_str());
     }
   }
+  require_no_given_states(errors);
   CorrectionOptions options;
   options.target = target_kind(target);
   options.largest_turn = largest_turn_deg * std::numbers::pi / 180;

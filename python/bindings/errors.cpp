@@ -10,7 +10,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/random_errors.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/machine/machine_check.h"
 #include "bindings/arrays.h"
@@ -184,6 +186,7 @@ nb::object uncertainties(const MachineErrors& errors) {
 
 /// Standard uncertainties of the error motions of one axis at its positions, from the covariance of the coefficients.
 nb::object evaluate_uncertainty(const MachineErrors& errors, const std::string& axis_name, const ArrayLike& positions) {
+  refuse_states(errors.machine, errors.set(), "an error motion by itself");
   const std::size_t axis = errors.machine.find_axis(axis_name);
   if (axis == Machine::npos) {
     throw nb::key_error(fmt::format("no axis '{}' in {}", axis_name, errors.machine.chain()).c_str());
@@ -215,7 +218,26 @@ nb::object evaluate_uncertainty(const MachineErrors& errors, const std::string& 
   return result.release({kComponentCount}, false);
 }
 
+/// Errors at values of their measured and lag states; those of the machine that are left are computed at a pose.
+MachineErrors errors_at(const MachineErrors& errors, const std::map<std::string, double>& states) {
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : states) texts.push_back(fmt::format("{}={}", name, value));
+  const std::vector<double> values = state_options(errors.machine, "states", texts);
+  return {errors.machine, at_given_states(errors.machine, errors.file, values, "errors")};
+}
+
+/// Names of the states that errors depend on, as Python gives them.
+std::vector<std::string> states_used(const MachineErrors& errors) {
+  std::vector<std::string> names;
+  const std::vector<std::uint8_t> used = used_states(errors.machine, errors.set());
+  for (std::size_t j = 0; j < used.size(); ++j) {
+    if (used[j] != 0) names.push_back(errors.machine.states[j].name);
+  }
+  return names;
+}
+
 nb::object evaluate(const MachineErrors& errors, const std::string& axis_name, const ArrayLike& positions) {
+  refuse_states(errors.machine, errors.set(), "an error motion by itself");
   const std::size_t axis = errors.machine.find_axis(axis_name);
   if (axis == Machine::npos)
     throw nb::key_error(fmt::format("no axis '{}' in {}", axis_name, errors.machine.chain()).c_str());
@@ -277,14 +299,14 @@ void bind_errors(nb::module_& module) {
       .def_static(
           "read",
           [](const std::filesystem::path& path, const Machine& machine) {
-            return MachineErrors{machine, read_errors(path, machine)};
+            return MachineErrors{machine, read_errors(path, machine, StatesOfErrors::allowed)};
           },
           nb::arg("path"), nb::arg("machine"),
           "Errors from a file (*.errors.toml) and the covariance it names. Raises InputError.")
       .def_static(
           "parse",
           [](const std::string& text, const Machine& machine, const std::filesystem::path& path) {
-            return MachineErrors{machine, parse_errors(text, path, machine)};
+            return MachineErrors{machine, parse_errors(text, path, machine, StatesOfErrors::allowed)};
           },
           nb::arg("text"), nb::arg("machine"), nb::arg("path") = std::filesystem::path("errors.toml"),
           "Errors from text; other files are looked for in the folder of `path`.")
@@ -411,6 +433,12 @@ void bind_errors(nb::module_& module) {
           "Sets the reversal value of an axis (ISO 230-2: position after a positive approach less that after a "
           "negative\n"
           "one; lost motion is below zero).")
+      .def_prop_ro("states", &states_used,
+                   "Names of the states of the machine that the errors depend on; empty: they depend on none.")
+      .def("at_state", &errors_at, nb::arg("states"),
+           "Errors as they are at values of measured and lag states, with their covariance.\n\n"
+           "states: {'ambient_degC': 26.5}, all that the errors depend on. Errors with states that are computed at a\n"
+           "pose keep these. Raises InputError naming what is missing.")
       .def("evaluate", &evaluate, nb::arg("axis"), nb::arg("positions_mm_rad"),
            nb::sig("def evaluate(self, axis: str, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray"),
            "Error motions of one axis at its positions: [n, 6], EX EY EZ in mm, EA EB EC in rad.")

@@ -17,6 +17,7 @@
 #include "abbe/machine/machine_check.h"
 #include "bindings/arrays.h"
 #include "bindings/files.h"
+#include "bindings/states.h"
 
 namespace abbe::python {
 namespace {
@@ -125,17 +126,20 @@ void bind_axis(nb::module_& module) {
 
 void bind_machine(nb::module_& module) {
   bind_axis(module);
-  nb::class_<Machine>(module, "Machine",
-                      "A serial machine from the workpiece to the tool, without errors.\n\n"
-                      "Machine frame: fixed to the bed, right-handed, axes X Y Z of ISO 841. All directions and points "
-                      "are given in it with\n"
-                      "every axis at zero. Arrays of axis commands are in the order of the chain, mm for linear and "
-                      "rad for rotary axes.\n\n"
-                      ">>> import abbe\n"
-                      ">>> mill = abbe.Machine.from_chain(\"w C' A' Y' b X Z t\")\n"
-                      ">>> mill.axis_names\n"
-                      "['C', 'A', 'Y', 'X', 'Z']\n"
-                      ">>> mill.axis('A').point_mm = (0, 0, -50)\n")
+  nb::class_<Machine> bound(
+      module, "Machine",
+      "A serial machine from the workpiece to the tool, without errors.\n\n"
+      "Machine frame: fixed to the bed, right-handed, axes X Y Z of ISO 841. All directions and points "
+      "are given in it with\n"
+      "every axis at zero. Arrays of axis commands are in the order of the chain, mm for linear and "
+      "rad for rotary axes.\n\n"
+      ">>> import abbe\n"
+      ">>> mill = abbe.Machine.from_chain(\"w C' A' Y' b X Z t\")\n"
+      ">>> mill.axis_names\n"
+      "['C', 'A', 'Y', 'X', 'Z']\n"
+      ">>> mill.axis('A').point_mm = (0, 0, -50)\n");
+  add_states(bound);
+  bound
       .def_static(
           "from_chain", &machine_of_chain, nb::arg("chain"),
           "Machine of a chain such as \"w C' X' b Z t\" with default directions and travels.\n\n"

@@ -31,6 +31,7 @@ NB_MODULE(_core, module) {
   module.def("write_text", &write_text, nb::arg("path"), nb::arg("text"), nb::arg("overwrite"),
              "Writes a file, whole or not at all.");
   bind_input_error(module);
+  bind_states(module);
   bind_machine(module);
   bind_errors(module);
   bind_poses(module);

@@ -8,6 +8,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "bindings/arrays.h"
 #include "bindings/machine_errors.h"
+#include "bindings/states.h"
 
 namespace abbe::python {
 namespace {
@@ -35,17 +36,37 @@ RotationArrays from(RotationArrays arrays, std::size_t first) {
   return arrays;
 }
 
+/// Poses at which a model is asked: their commands, and the states that its errors need.
+struct Asked {
+  Asked(const PoseModel& model, const ArrayLike& argument, const StatesArgument& values)
+      : positions(argument, model.machine()), states(values, model.machine(), model.errors(), positions.count()) {}
+  /// Of a machine without errors.
+  Asked(const PoseModel& model, const ArrayLike& argument)
+      : positions(argument, model.machine()), states({}, model.machine(), {}, 0) {}
+  Positions positions;
+  GivenColumns states;
+};
+
 /// Runs work(positions of a block, its first pose) over all poses without the GIL.
 template <class Work>
-void for_blocks(const Positions& positions, const Work& work) {
+void for_blocks(const Asked& asked, const Work& work) {
+  const Positions& positions = asked.positions;
+  const auto run = [&](std::size_t first, std::size_t count, Positions::Block& memory,
+                       std::vector<const double*>& columns) {
+    PositionArrays block = positions.block(first, count, memory);
+    block.state = asked.states.from(first, columns);
+    work(block, first);
+  };
   if (positions.count() <= Positions::kBlock) {
     Positions::Block memory;
-    return work(positions.block(0, positions.count(), memory), std::size_t{0});
+    std::vector<const double*> columns;
+    return run(0, positions.count(), memory, columns);
   }
   const nb::gil_scoped_release release;
   for_each_block_of(positions.count(), [&](std::size_t first, std::size_t count) {
     thread_local Positions::Block memory;
-    work(positions.block(first, count, memory), first);
+    thread_local std::vector<const double*> columns;
+    run(first, count, memory, columns);
   });
 }
 
@@ -53,11 +74,11 @@ nb::object covered_array(Columns<std::uint8_t>& covered, bool single) {
   return single ? nb::object(nb::bool_(covered[0][0] != 0)) : covered.release_bools();
 }
 
-void fill_poses(const PoseModel& model, const Positions& positions, bool nominal, double* point, double* rotation,
+void fill_poses(const PoseModel& model, const Asked& asked, bool nominal, double* point, double* rotation,
                 std::uint8_t* covered) {
-  const PointArrays to_points = points(point, positions.count());
-  const RotationArrays to_rotations = rotations(rotation, positions.count());
-  for_blocks(positions, [&](PositionArrays block, std::size_t first) {
+  const PointArrays to_points = points(point, asked.positions.count());
+  const RotationArrays to_rotations = rotations(rotation, asked.positions.count());
+  for_blocks(asked, [&](PositionArrays block, std::size_t first) {
     if (nominal) {
       model.nominal_poses(block, from(to_points, first), from(to_rotations, first));
     } else {
@@ -91,7 +112,8 @@ double* memory_of_columns(nb::handle array, const Positions& positions, std::ini
   return memory;
 }
 
-void fill_out(const PoseModel& model, const Positions& positions, bool nominal, const Poses& out) {
+void fill_out(const PoseModel& model, const Asked& asked, bool nominal, const Poses& out) {
+  const Positions& positions = asked.positions;
   const std::size_t count = positions.count();
   const std::int64_t one = 1;
   double* point = memory_of_columns(out.points_mm, positions, {3}, {1});
@@ -101,18 +123,18 @@ void fill_out(const PoseModel& model, const Positions& positions, bool nominal, 
   if (positions.single() || !point || !rotation || !has_coverage) {
     refuse_out(positions, nominal ? "a result of nominal_poses()" : "a result of poses()");
   }
-  fill_poses(model, positions, nominal, point, rotation, static_cast<std::uint8_t*>(covered));
+  fill_poses(model, asked, nominal, point, rotation, static_cast<std::uint8_t*>(covered));
 }
 
-nb::object poses_of(const PoseModel& model, const ArrayLike& argument, bool nominal, Poses* out) {
-  const Positions positions(argument, model.machine());
+nb::object poses_of(const PoseModel& model, const Asked& asked, bool nominal, Poses* out) {
+  const Positions& positions = asked.positions;
   if (out) {
-    fill_out(model, positions, nominal, *out);
+    fill_out(model, asked, nominal, *out);
     return nb::find(out);
   }
   Columns<double> point(3, positions.count()), rotation(9, positions.count());
   Columns<std::uint8_t> covered(1, positions.count());
-  fill_poses(model, positions, nominal, point[0], rotation[0], covered[0]);
+  fill_poses(model, asked, nominal, point[0], rotation[0], covered[0]);
   const bool single = positions.single();
   Poses result;
   result.points_mm = point.release({3}, single);
@@ -121,10 +143,10 @@ nb::object poses_of(const PoseModel& model, const ArrayLike& argument, bool nomi
   return nb::cast(std::move(result));
 }
 
-nb::object pose_points(const PoseModel& model, const ArrayLike& argument, const std::optional<ArrayLike>& out) {
-  const Positions positions(argument, model.machine());
+nb::object pose_points(const PoseModel& model, const Asked& asked, const std::optional<ArrayLike>& out) {
+  const Positions& positions = asked.positions;
   const auto fill = [&](PointArrays to) {
-    for_blocks(positions, [&](PositionArrays block, std::size_t first) { model.poses(block, from(to, first)); });
+    for_blocks(asked, [&](PositionArrays block, std::size_t first) { model.poses(block, from(to, first)); });
   };
   if (out) {
     double* memory = memory_of_columns(out->source, positions, {3}, {1});
@@ -137,10 +159,10 @@ nb::object pose_points(const PoseModel& model, const ArrayLike& argument, const 
   return point.release({3}, positions.single());
 }
 
-nb::object deviations_of(const PoseModel& model, const ArrayLike& argument) {
-  const Positions positions(argument, model.machine());
+nb::object deviations_of(const PoseModel& model, const Asked& asked) {
+  const Positions& positions = asked.positions;
   Columns<double> deviation(6, positions.count());
-  for_blocks(positions, [&](PositionArrays block, std::size_t first) {
+  for_blocks(asked, [&](PositionArrays block, std::size_t first) {
     std::array<double*, 6> out{};
     for (std::size_t r = 0; r < 6; ++r) out[r] = deviation[r] + first;
     model.deviations(block, out.data());
@@ -148,19 +170,19 @@ nb::object deviations_of(const PoseModel& model, const ArrayLike& argument) {
   return deviation.release({6}, positions.single());
 }
 
-nb::object covered_of(const PoseModel& model, const ArrayLike& argument) {
-  const Positions positions(argument, model.machine());
+nb::object covered_of(const PoseModel& model, const Asked& asked) {
+  const Positions& positions = asked.positions;
   Columns<double> point(3, positions.count());
   Columns<std::uint8_t> covered(1, positions.count());
   const PointArrays to = points(point[0], positions.count());
-  for_blocks(positions, [&](PositionArrays block, std::size_t first) {
+  for_blocks(asked, [&](PositionArrays block, std::size_t first) {
     model.poses(block, from(to, first), {}, covered[0] + first);
   });
   return covered_array(covered, positions.single());
 }
 
-nb::object jacobian_of(const PoseModel& model, const ArrayLike& argument, bool by_commands) {
-  const Positions positions(argument, model.machine());
+nb::object jacobian_of(const PoseModel& model, const Asked& asked, bool by_commands) {
+  const Positions& positions = asked.positions;
   const std::size_t columns = by_commands ? model.machine().axes.size() : model.errors().parameter_count();
   constexpr std::size_t kLargest = std::size_t{1} << 31;  // numbers: 16 GiB
   if (positions.count() * 6 * columns > kLargest) {
@@ -169,7 +191,7 @@ nb::object jacobian_of(const PoseModel& model, const ArrayLike& argument, bool b
                      "fewer poses in one call: the derivatives would take more than 16 GiB");
   }
   std::vector<double> jacobian(positions.count() * 6 * columns);
-  for_blocks(positions, [&](PositionArrays block, std::size_t first) {
+  for_blocks(asked, [&](PositionArrays block, std::size_t first) {
     double* out = jacobian.data() + first * 6 * columns;
     by_commands ? model.jacobian_by_positions(block, out) : model.jacobian(block, out);
   });
@@ -211,52 +233,81 @@ void bind_poses(nb::module_& module) {
           nb::arg("errors"))
       .def(
           "poses",
-          [](const PoseModel& model, const ArrayLike& positions, Poses* out) {
-            return poses_of(model, positions, false, out);
+          [](const PoseModel& model, const ArrayLike& positions, const StatesArgument& states, Poses* out) {
+            return poses_of(model, {model, positions, states}, false, out);
           },
-          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out").none() = nb::none(),
-          nb::sig("def poses(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: Poses | None = None) -> Poses"),
+          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("states") = nb::none(),
+          nb::arg("out").none() = nb::none(),
+          nb::sig("def poses(self, positions_mm_rad: numpy.typing.ArrayLike, *, states: dict[str, "
+                  "numpy.typing.ArrayLike] | None = None, out: Poses | None = None) -> Poses"),
           "Where the tool really is.\n\n"
+          "states: values of states that the errors depend on, by column: {'ambient_degC': number or [n]}; sides of\n"
+          "approach by the name of the state, -1 or 1.\n"
           "out: the result of an earlier call with as many commands, which is overwritten and returned: new memory\n"
           "for a million poses takes about as long as computing them. It must not share memory with the commands.\n"
           "If the call fails, part of it may be overwritten.")
       .def(
           "nominal_poses",
           [](const PoseModel& model, const ArrayLike& positions, Poses* out) {
-            return poses_of(model, positions, true, out);
+            return poses_of(model, {model, positions}, true, out);
           },
           nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out").none() = nb::none(),
           nb::sig("def nominal_poses(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: Poses | None = None) -> "
                   "Poses"),
           "Where the tool would be without errors. out: as in poses().")
-      .def("points", &pose_points, nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out") = nb::none(),
-           nb::sig("def points(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: numpy.ndarray | None = None) -> "
-                   "numpy.ndarray"),
-           "The functional point alone, [n, 3], mm: faster than poses().\n\n"
-           "out: an array (n, 3) of float64 in Fortran order, such as an earlier result, which is overwritten and\n"
-           "returned. It must not share memory with the commands.")
-      .def("covered", &covered_of, nb::arg("positions_mm_rad"),
-           nb::sig("def covered(self, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray | bool"),
-           "[n] false where a command lies outside the range of an error motion.")
-      .def("deviations", &deviations_of, nb::arg("positions_mm_rad"),
-           nb::sig("def deviations(self, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray"),
-           "Actual minus nominal, [n, 6]: displacement x y z in mm, rotation vector x y z in rad, workpiece frame.")
+      .def(
+          "points",
+          [](const PoseModel& model, const ArrayLike& positions, const StatesArgument& states,
+             const std::optional<ArrayLike>& out) {
+            return pose_points(model, {model, positions, states}, out);
+          },
+          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("states") = nb::none(), nb::arg("out") = nb::none(),
+          nb::sig("def points(self, positions_mm_rad: numpy.typing.ArrayLike, *, states: dict[str, "
+                  "numpy.typing.ArrayLike] | None = None, out: numpy.ndarray | None = None) -> numpy.ndarray"),
+          "The functional point alone, [n, 3], mm: faster than poses(). states: as in poses().\n\n"
+          "out: an array (n, 3) of float64 in Fortran order, such as an earlier result, which is overwritten and\n"
+          "returned. It must not share memory with the commands.")
+      .def(
+          "covered",
+          [](const PoseModel& model, const ArrayLike& positions, const StatesArgument& states) {
+            return covered_of(model, {model, positions, states});
+          },
+          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("states") = nb::none(),
+          nb::sig("def covered(self, positions_mm_rad: numpy.typing.ArrayLike, *, states: dict[str, "
+                  "numpy.typing.ArrayLike] | None = None) -> numpy.ndarray | bool"),
+          "[n] false where a command lies outside the range of an error motion.")
+      .def(
+          "deviations",
+          [](const PoseModel& model, const ArrayLike& positions, const StatesArgument& states) {
+            return deviations_of(model, {model, positions, states});
+          },
+          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("states") = nb::none(),
+          nb::sig("def deviations(self, positions_mm_rad: numpy.typing.ArrayLike, *, states: dict[str, "
+                  "numpy.typing.ArrayLike] | None = None) -> numpy.ndarray"),
+          "Actual minus nominal, [n, 6]: displacement x y z in mm, rotation vector x y z in rad, workpiece frame.")
       .def(
           "jacobian",
-          [](const PoseModel& model, const ArrayLike& positions) { return jacobian_of(model, positions, false); },
-          nb::arg("positions_mm_rad"),
-          nb::sig("def jacobian(self, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray"),
+          [](const PoseModel& model, const ArrayLike& positions, const StatesArgument& states) {
+            return jacobian_of(model, {model, positions, states}, false);
+          },
+          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("states") = nb::none(),
+          nb::sig("def jacobian(self, positions_mm_rad: numpy.typing.ArrayLike, *, states: dict[str, "
+                  "numpy.typing.ArrayLike] | None = None) -> numpy.ndarray"),
           "Derivative of the deviations by the values of the errors, [n, 6, p], per mm or rad.")
       .def(
           "jacobian_by_positions",
-          [](const PoseModel& model, const ArrayLike& positions) { return jacobian_of(model, positions, true); },
-          nb::arg("positions_mm_rad"),
-          nb::sig("def jacobian_by_positions(self, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray"),
+          [](const PoseModel& model, const ArrayLike& positions, const StatesArgument& states) {
+            return jacobian_of(model, {model, positions, states}, true);
+          },
+          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("states") = nb::none(),
+          nb::sig("def jacobian_by_positions(self, positions_mm_rad: numpy.typing.ArrayLike, *, states: dict[str, "
+                  "numpy.typing.ArrayLike] | None = None) -> numpy.ndarray"),
           "Derivative of the actual pose by the commands, [n, 6, axes], per mm or rad.");
   module.def(
       "nominal_poses",
       [](const Machine& machine, const ArrayLike& positions) {
-        return poses_of(PoseModel(machine, {}), positions, true, nullptr);
+        const PoseModel model(machine, {});
+        return poses_of(model, {model, positions}, true, nullptr);
       },
       nb::arg("machine"), nb::arg("positions_mm_rad"),
       nb::sig("def nominal_poses(machine: Machine, positions_mm_rad: numpy.typing.ArrayLike) -> Poses"),

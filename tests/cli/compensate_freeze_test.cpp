@@ -71,7 +71,7 @@ TEST_F(CompensateFreezeTest, TakesErrorsThatDependOnStates) {
   const CommandResult checked = abbe({"check", output});
   EXPECT_EQ(checked.exit_code, done) << checked.err;
   EXPECT_NE(checked.out.find("  state column: lag of ambient, 1800 s\n"), std::string::npos) << checked.out;
-  for (const std::string& wrong : {"cold=1:2", "ambient=28:16", "ambient=16", "ambient", "column=16:28", "load=x:2"}) {
+  for (const char* const wrong : {"cold=1:2", "ambient=28:16", "ambient=16", "ambient", "column=16:28", "load=x:2"}) {
     const CommandResult refused = freeze({"--state-range", wrong});
     EXPECT_EQ(refused.exit_code, bad_input) << wrong;
     EXPECT_NE(refused.err.find("--state-range: "), std::string::npos) << refused.err;

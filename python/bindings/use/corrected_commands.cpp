@@ -9,6 +9,7 @@
 
 #include "abbe/formats/readings/measurement_file.h"
 #include "bindings/files.h"
+#include "bindings/states.h"
 #include "bindings/use/arguments.h"
 
 namespace abbe::python {
@@ -17,7 +18,8 @@ namespace {
 CorrectedCommands commands_of(const MachineErrors& errors, const ArrayLike& positions,
                               const std::vector<std::string>& hold, std::optional<double> largest_turn_deg,
                               double leave_out, std::optional<double> limit_um, bool accept_misfit,
-                              const std::string& machine_file, const std::string& errors_file) {
+                              const StatesArgument& states, const std::string& machine_file,
+                              const std::string& errors_file) {
   require_trusted(errors, accept_misfit, errors_file);
   const Positions poses(positions, errors.machine);
   if (poses.single()) throw InputError({.field = "positions_mm_rad"}, "is a single pose", "shape (n, axes)");
@@ -25,6 +27,7 @@ CorrectedCommands commands_of(const MachineErrors& errors, const ArrayLike& posi
   request.machine = errors.machine;
   request.errors = errors.file;
   request.poses = poses.list();
+  GivenColumns(states, errors.machine, errors.set(), poses.count()).put_into(request.poses);
   request.machine_file = machine_file;
   request.errors_file = errors_file;
   request.held = axis_indices(errors.machine, hold);
@@ -146,11 +149,12 @@ void bind_corrected_commands(nb::module_& module) {
       "correct_commands", &commands_of, nb::arg("errors"), nb::arg("positions_mm_rad"), nb::kw_only(),
       nb::arg("hold") = std::vector<std::string>{}, nb::arg("largest_turn_deg") = nb::none(),
       nb::arg("leave_out_below_uncertainty") = 0.0, nb::arg("limit_um") = nb::none(), nb::arg("accept_misfit") = false,
-      nb::arg("machine_file") = "machine.toml", nb::arg("errors_file") = "errors.toml",
+      nb::arg("states") = nb::none(), nb::arg("machine_file") = "machine.toml", nb::arg("errors_file") = "errors.toml",
       "Commands that bring the actual tool to where the nominal machine has it, with uncertainties.\n\n"
       "positions_mm_rad [n, axes]: nominal commands. hold: axes that keep their commands. largest_turn_deg: of\n"
       "rotary axes; None: 0.5, of an arm 5. leave_out_below_uncertainty: errors below so many of their standard\n"
-      "uncertainties are left out. limit_um: larger corrections are refused. Without uncertainties and texts,\n"
+      "uncertainties are left out. limit_um: larger corrections are refused. states: as in PoseModel.poses().\n"
+      "Without uncertainties and texts,\n"
       "CompensatedInverse is quicker. Method: docs/compensation.md.\n\n"
       ">>> import abbe\n"
       ">>> mill = abbe.Machine.from_chain(\"w X' Y' b Z t\")\n"

@@ -36,7 +36,7 @@ Compensation load(std::string bytes, const std::string& file) {
   }
   result.runtime.reset(handle);
   if (abbe_runtime_channels(handle) > 0) {
-    throw InputError({.field = "bytes", .file = file}, "the errors depend on states, which this class does not take",
+    throw InputError({.file = file, .field = "bytes"}, "the errors depend on states, which this class does not take",
                      "a compensation whose errors have no measured states");
   }
   abbe_runtime_describe(handle, &result.about);

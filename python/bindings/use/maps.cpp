@@ -10,6 +10,7 @@
 #include "abbe/study/errors_map.h"
 #include "bindings/files.h"
 #include "bindings/job.h"
+#include "bindings/states.h"
 #include "bindings/use/map_parts.h"
 
 namespace abbe::python {
@@ -50,6 +51,8 @@ void write_map(const ErrorsMap& map, const std::filesystem::path& path, bool ove
 
 VolumetricFigures figures_of(const MachineErrors& errors, const MachineErrors* truth, const AxisRanges& grid) {
   const Machine& machine = errors.machine;
+  require_no_given_states(errors);
+  if (truth != nullptr) require_no_given_states(*truth);
   std::vector<const ErrorSet*> sets{&errors.set()};
   if (truth != nullptr) {
     require_same_machine(machine, truth->machine, "truth");
@@ -68,7 +71,11 @@ VolumetricFigures figures_of(const MachineErrors& errors, const MachineErrors* t
 SampleStatistics statistics_of(const MachineErrors& errors, const MachineErrors* minus, const AxisRanges& grid,
                                bool keep_datum, const nb::object& progress) {
   const Machine& machine = errors.machine;
-  if (minus != nullptr) require_same_machine(machine, minus->machine, "minus");
+  require_no_given_states(errors);
+  if (minus != nullptr) {
+    require_same_machine(machine, minus->machine, "minus");
+    require_no_given_states(*minus);
+  }
   std::vector<AxisRange> ranges = stated_ranges(machine, {&errors.set()});
   const auto given = axis_ranges(machine, "grid", grid, true);
   PoseGrid poses;
@@ -93,6 +100,7 @@ SampleStatistics statistics_of(const MachineErrors& errors, const MachineErrors*
 using Shares = std::vector<ErrorShare> (*)(const Machine&, const ErrorSet&, const PoseSource&, int);
 
 std::vector<ErrorShare> shares(Shares function, const MachineErrors& errors, const ArrayLike& positions) {
+  require_no_given_states(errors);
   const Positions given(positions, errors.machine);
   const PoseList list = given.list();
   return computed([&] { return function(errors.machine, errors.set(), pose_source(list), 0); });

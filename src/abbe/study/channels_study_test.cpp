@@ -236,7 +236,9 @@ TEST(ChannelsStudy, IdentifiesGrowthFromReadingsWithTimesAndRecordedTemperatures
     EXPECT_NEAR(found.state[0][k], truth.state[0][k], 1e-3) << k;
     EXPECT_NEAR(found.state[1][k], truth.state[1][k], 1e-3) << k;
     // 8 K wide at most, four hours before the first reading: exp(-4.8) of a wrong start.
-    EXPECT_NEAR(found.state[2][k], truth.state[2][k], 8 * std::exp(-(4 * kHour + 180.0 * k) / kTau) + 1e-3) << k;
+    EXPECT_NEAR(found.state[2][k], truth.state[2][k],
+                8 * std::exp(-(4 * kHour + 180.0 * static_cast<double>(k)) / kTau) + 1e-3)
+        << k;
   }
 }
 

@@ -18,26 +18,6 @@ namespace {
 /// A frozen compensation that differs more from the full model of the same errors is not given out, mm.
 constexpr double kLargestFreezeDifference = 1e-6;
 
-FreezeOptions freeze_options(const FreezeRequest& request) {
-  FreezeOptions options;
-  options.tool = request.tool.value_or(request.machine.tool_offset);
-  if (!options.tool.allFinite()) throw InputError({.field = "--tool-mm"}, "not finite", "three lengths in mm");
-  options.tool_length_min = request.tool_length_min;
-  options.tool_length_max = request.tool_length_max;
-  if (!(request.tool_length_min <= request.tool_length_max) ||
-      !std::isfinite(request.tool_length_max - request.tool_length_min)) {
-    throw InputError({.field = "--tool-length-mm"}, "the range is empty", "the lower end first, in mm");
-  }
-  check_largest_turn(request.largest_turn);
-  options.largest_turn = request.largest_turn;
-  options.world_zero_at_joints = request.world_zero_at_joints;
-  options.covariance = parameter_covariance(request.errors.errors, request.errors.covariance);
-  options.source = machine_text(request.machine) + errors_text(request.machine, request.errors);
-  options.version = version_text();
-  options.state_ranges = parse_state_ranges(request.machine, request.state_ranges);
-  return options;
-}
-
 /// "ambient=15:30": the measured states of these names.
 std::vector<StateRange> parse_state_ranges(const Machine& machine, const std::vector<std::string>& texts) {
   std::vector<StateRange> ranges(machine.states.size());
@@ -59,6 +39,26 @@ std::vector<StateRange> parse_state_ranges(const Machine& machine, const std::ve
     }
   }
   return ranges;
+}
+
+FreezeOptions freeze_options(const FreezeRequest& request) {
+  FreezeOptions options;
+  options.tool = request.tool.value_or(request.machine.tool_offset);
+  if (!options.tool.allFinite()) throw InputError({.field = "--tool-mm"}, "not finite", "three lengths in mm");
+  options.tool_length_min = request.tool_length_min;
+  options.tool_length_max = request.tool_length_max;
+  if (!(request.tool_length_min <= request.tool_length_max) ||
+      !std::isfinite(request.tool_length_max - request.tool_length_min)) {
+    throw InputError({.field = "--tool-length-mm"}, "the range is empty", "the lower end first, in mm");
+  }
+  check_largest_turn(request.largest_turn);
+  options.largest_turn = request.largest_turn;
+  options.world_zero_at_joints = request.world_zero_at_joints;
+  options.covariance = parameter_covariance(request.errors.errors, request.errors.covariance);
+  options.source = machine_text(request.machine) + errors_text(request.machine, request.errors);
+  options.version = version_text();
+  options.state_ranges = parse_state_ranges(request.machine, request.state_ranges);
+  return options;
 }
 
 /// Why no pose was compensated, and what can be done.
