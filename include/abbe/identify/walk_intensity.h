@@ -10,8 +10,8 @@ namespace abbe {
 
 /// Unknowns that wander with one intensity, which is sought: joint priors whose information is K / variance.
 struct EstimatedWalk {
-  std::string name;                 ///< "tracker1 shifts"
-  std::size_t setup = 0;            ///< index into Problem::observations
+  std::string name;       ///< "tracker1 shifts"
+  std::size_t setup = 0;  ///< index into Problem::observations
   bool is_angle = false;
   std::vector<std::size_t> priors;  ///< indices into Problem::joint_priors
   double variance = 0;              ///< of the given priors; afterwards as estimated: mm^2/s or rad^2/s
@@ -25,7 +25,8 @@ struct EstimatedWalk {
 ///
 /// With u the estimates of a walk, C their covariance, t its variance and A = K C / t, of n unknowns,
 ///
-///     score = -(n - tr A)/(2 t) + u'K u/(2 t^2),    information_ij = tr((delta_ij I - A_ij)(delta_ij I - A_ji))/(2 t_i t_j)
+///     score = -(n - tr A)/(2 t) + u'K u/(2 t^2),    information_ij = tr((delta_ij I - A_ij)(delta_ij I - A_ji))/(2 t_i
+///     t_j)
 ///
 /// (A_ij = K_i C_ij / t_j): what RestrictedLikelihood has, with the unknowns that wander as random effects (Harville,
 /// J. Am. Stat. Assoc. 72 (1977) 320; Searle, Casella and McCulloch, Variance Components (1992), 7.6). Fisher scoring

@@ -54,7 +54,7 @@ struct StudyResult {
   std::vector<Identification> stages;
   Identification identification;
   std::optional<WeighedIdentification> weighed;  ///< variances of the readings, if estimated; its result is moved out
-  std::vector<EstimatedWalk> walks;  ///< intensities of random walks, where they are estimated
+  std::vector<EstimatedWalk> walks;              ///< intensities of random walks, where they are estimated
   std::optional<MonteCarloResult> monte_carlo;
   std::optional<UnseenPoses> unseen;
   std::optional<VolumetricFigures> volumetric;  ///< over the grid of all commands; usable results only

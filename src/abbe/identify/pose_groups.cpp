@@ -23,8 +23,8 @@ PoseGroups::PoseGroups(const Observations& observations, const std::vector<std::
     std::size_t group = groups_.size();
     const bool used = use.empty() || use[k] != 0;
     if (used) {
-      std::vector<double> key = common.empty() ? observations.positions(k)
-                                               : std::vector<double>{static_cast<double>(common[k])};
+      std::vector<double> key =
+          common.empty() ? observations.positions(k) : std::vector<double>{static_cast<double>(common[k])};
       group = known.emplace(std::move(key), group).first->second;
     }
     if (group == groups_.size()) groups_.emplace_back().used = used;

@@ -26,8 +26,8 @@ struct BlockSums {
 struct Predictor {
   Eigen::MatrixXd inverse;  ///< of the normal matrix of the others, pseudo-inverse over the present parameters
   Eigen::VectorXd step;
-  double square = 0;        ///< mean squared residual of the block
-  bool usable = false;      ///< the others determine what the block needs
+  double square = 0;    ///< mean squared residual of the block
+  bool usable = false;  ///< the others determine what the block needs
 };
 
 NormalEquations sums_of(Problem problem, const Eigen::VectorXd& at, const IdentifyOptions& options,
@@ -59,38 +59,67 @@ class TermSearch {
   /// Takes the best term, if it is worth it.
   bool take_one() {
     if (mean_square() < kNothingLeft) return false;
-    std::size_t best = candidates_.size(), best_levels = 0;
-    double best_gain = 0, best_probability = 1;
-    for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      // By two levels too: an even dependence may need the second and not the first.
-      for (std::size_t more = 1; more <= 2 && result.levels[c] + more <= candidates_[c].levels.size(); ++more) {
-        const std::vector<double> gains = gains_of(added(c, result.levels[c] + more));
-        ++result.tried;
-        if (gains.empty()) continue;
-        const double gain = mean(gains);
-        const double least = options_.minimum_gain * mean_square();
-        if (gain <= best_gain || gain < least) continue;
-        const double probability = sum_exceedance(gains, 0);
-        if (probability >= options_.significance) continue;
-        best = c;
-        best_levels = result.levels[c] + more;
-        best_gain = gain;
-        best_probability = probability;
-      }
+    const std::vector<Trial> trials = tried();
+    std::vector<double> dispersions;
+    for (const Trial& trial : trials) dispersions.push_back(trial.dispersion);
+    // The least that all candidates show: what the model lacks makes neighbours alike, whatever is tried.
+    const double common = dispersions.empty() ? 1 : middle(std::move(dispersions));
+    const Trial* best = nullptr;
+    double best_probability = 1;
+    for (const Trial& trial : trials) {
+      if (trial.gain < options_.minimum_gain * mean_square() || (best != nullptr && trial.gain <= best->gain)) continue;
+      const double probability = chi_square_exceedance(trial.wald / std::max({1.0, common, trial.dispersion}),
+                                                       static_cast<double>(trial.columns.size()));
+      if (probability * static_cast<double>(trials.size()) >= options_.significance) continue;
+      // A lower order that would do as well comes first.
+      if (best != nullptr && best->candidate == trial.candidate) continue;
+      best = &trial;
+      best_probability = probability;
     }
-    if (best == candidates_.size()) return false;
+    if (best == nullptr) return false;
     const double before = std::sqrt(mean_square());
-    for (const std::size_t column : added(best, best_levels)) present_.push_back(static_cast<Index>(column));
-    result.levels[best] = best_levels;
+    for (const std::size_t column : best->columns) present_.push_back(static_cast<Index>(column));
+    result.levels[best->candidate] = best->levels;
     predict();
     result.last_rms = std::sqrt(mean_square());
-    result.taken.push_back({best, best_levels, before, result.last_rms, best_probability});
+    result.taken.push_back({best->candidate, best->levels, before, result.last_rms, best_probability});
     return true;
   }
 
   TermSelection result;
 
  private:
+  /// A candidate with one or two more levels.
+  struct Trial {
+    std::size_t candidate = 0, levels = 0;
+    std::vector<std::size_t> columns;
+    double gain = 0;        ///< fall of the mean squared residual of held-out blocks
+    double wald = 0;        ///< chi-square of what is added, by the uncertainties as stated
+    double dispersion = 1;  ///< how much more its estimates scatter from block to block than those say
+  };
+
+  static double middle(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+  }
+
+  std::vector<Trial> tried() {
+    std::vector<Trial> trials;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      // By two levels too: an even dependence may need the second and not the first.
+      for (std::size_t more = 1; more <= 2 && result.levels[c] + more <= candidates_[c].levels.size(); ++more) {
+        Trial trial{.candidate = c, .levels = result.levels[c] + more, .columns = {}};
+        trial.columns = added(c, trial.levels);
+        ++result.tried;
+        const std::vector<double> gains = gains_of(trial.columns);
+        if (gains.empty() || !test(trial)) continue;
+        trial.gain = mean(gains);
+        trials.push_back(std::move(trial));
+      }
+    }
+    return trials;
+  }
+
   static double mean(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   }
@@ -161,6 +190,10 @@ class TermSearch {
       add_priors(problem_, at_, sums.others);
       sums_.push_back(std::move(sums));
     }
+    whole_.others = sums_of(
+        problem_, at_, options_.identify, [](std::size_t, std::size_t) { return true; }, &whole_.residuals);
+    whole_.own = whole_.others;
+    add_priors(problem_, at_, whole_.others);
   }
 
   double square_of(const BlockSums& sums, const std::vector<Index>& columns, const Eigen::VectorXd& step) const {
@@ -200,6 +233,45 @@ class TermSearch {
       result.blocks += predictors_.back().usable ? 1U : 0U;
     }
     result.left_out = sums_.size() - result.blocks;
+    whole_predictor_ = predictor_of(whole_);
+  }
+
+  /// Wald's test of further columns in the fit to all readings, with the scatter from block to block that is left when
+  /// they are in the model: readings of a block may be correlated. False if they are not determined.
+  bool test(Trial& trial) const {
+    const std::vector<Index> columns(trial.columns.begin(), trial.columns.end());
+    const NormalEquations& all = whole_.others;
+    const Eigen::MatrixXd taken = whole_predictor_.inverse * all.normal(present_, columns);
+    const Eigen::MatrixXd information = all.normal(columns, columns) - all.normal(columns, present_) * taken;
+    const Eigen::VectorXd scale =
+        information.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 1.0; });
+    const SymmetricEigen<> eigen(scale.asDiagonal() * information * scale.asDiagonal());
+    if (!(eigen.eigenvalues()[0] > 1e3 * kUndetermined)) return false;
+    const Eigen::MatrixXd axes = scale.asDiagonal() * eigen.eigenvectors();
+    const Eigen::MatrixXd inverse = axes * eigen.eigenvalues().cwiseInverse().asDiagonal() * axes.transpose();
+    const Eigen::VectorXd score = all.gradient(columns) - all.normal(columns, present_) * whole_predictor_.step;
+    const Eigen::VectorXd more = inverse * score, rest = whole_predictor_.step - taken * more;
+    trial.wald = score.dot(more);
+    const double count = static_cast<double>(columns.size());
+    double scatter = 0, squares = 0;
+    for (const BlockSums& sums : sums_) {
+      const NormalEquations& own = sums.own;
+      const Eigen::VectorXd left =
+          own.gradient(columns) - own.normal(columns, present_) * rest - own.normal(columns, columns) * more;
+      const Eigen::VectorXd left_present =
+          own.gradient(present_) - own.normal(present_, present_) * rest - own.normal(present_, columns) * more;
+      const Eigen::VectorXd score_of_block = left - taken.transpose() * left_present;
+      scatter += score_of_block.dot(inverse * score_of_block) / count;
+      const Eigen::MatrixXd mixed = own.normal(columns, present_) * taken;
+      const Eigen::MatrixXd own_information = own.normal(columns, columns) - mixed - mixed.transpose() +
+                                              taken.transpose() * own.normal(present_, present_) * taken;
+      const double share = inverse.cwiseProduct(own_information).sum() / count;
+      squares += share * share;
+    }
+    const double blocks = 1 / squares;  // so many equal ones
+    if (!(blocks > 1.2)) return false;
+    trial.dispersion = scatter * blocks / (blocks - 1);
+    return true;
   }
 
   double mean_square() const {
@@ -228,8 +300,7 @@ class TermSearch {
       if (!(eigen.eigenvalues()[0] > 1e3 * kUndetermined)) return {};
       const Eigen::MatrixXd axes = scale.asDiagonal() * eigen.eigenvectors();
       const Eigen::VectorXd right = others.gradient(columns) - mixed.transpose() * now.step;
-      const Eigen::VectorXd more =
-          axes * eigen.eigenvalues().cwiseInverse().asDiagonal() * (axes.transpose() * right);
+      const Eigen::VectorXd more = axes * eigen.eigenvalues().cwiseInverse().asDiagonal() * (axes.transpose() * right);
       Eigen::VectorXd step(now.step.size() + more.size());
       step << now.step - taken * more, more;
       gains.push_back(now.square - square_of(sums_[b], all, step));
@@ -244,56 +315,11 @@ class TermSearch {
   std::vector<Index> present_;  // parameters of the model so far, among the estimates
   std::vector<BlockSums> sums_;
   std::vector<Predictor> predictors_;
+  BlockSums whole_;  // all readings
+  Predictor whole_predictor_;
 };
 
 }  // namespace
-
-std::vector<TimeBlocks> divide_by_time(const std::vector<std::vector<double>>& time_s, std::size_t blocks,
-                                       double gap_s) {
-  std::size_t readings = 0, first = 0;
-  for (const std::vector<double>& times : time_s) readings += times.size();
-  std::vector<TimeBlocks> result(time_s.size());
-  std::vector<std::pair<double, double>> spans;
-  for (std::size_t o = 0; o < time_s.size(); ++o) {
-    const std::vector<double>& times = time_s[o];
-    const double share = static_cast<double>(blocks * times.size()) / static_cast<double>(std::max<std::size_t>(1, readings));
-    const std::size_t own = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(share)));
-    std::vector<std::size_t> order(times.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return times[a] < times[b]; });
-    result[o].block.resize(times.size());
-    std::size_t block = 0;
-    spans.resize(first + own, {INFINITY, -INFINITY});
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      // A block begins where its share of the readings does, but never within one time.
-      const bool same_time = i > 0 && times[order[i]] == times[order[i - 1]];
-      if (!same_time) block = std::max(block, i * own / order.size());
-      result[o].block[order[i]] = first + block;
-      auto& [from, to] = spans[first + block];
-      from = std::min(from, times[order[i]]);
-      to = std::max(to, times[order[i]]);
-    }
-    first += own;
-  }
-  std::size_t before = 0;
-  for (std::size_t o = 0; o < result.size(); ++o) {
-    result[o].blocks = first;
-    const std::size_t end = o + 1 < result.size() && !result[o + 1].block.empty()
-                                ? *std::min_element(result[o + 1].block.begin(), result[o + 1].block.end())
-                                : first;
-    if (gap_s > 0) {
-      result[o].near.assign(time_s[o].size() * first, 0);
-      for (std::size_t k = 0; k < time_s[o].size(); ++k) {
-        for (std::size_t b = before; b < end; ++b) {
-          const double time = time_s[o][k];
-          result[o].near[k * first + b] = time > spans[b].first - gap_s && time < spans[b].second + gap_s ? 1 : 0;
-        }
-      }
-    }
-    before = end;
-  }
-  return result;
-}
 
 TermSelection select_terms(const Problem& problem, const std::vector<CandidateTerm>& candidates,
                            const std::vector<TimeBlocks>& blocks, const TermSelectionOptions& options) {

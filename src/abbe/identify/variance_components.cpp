@@ -99,7 +99,8 @@ class VarianceEstimation {
   static constexpr const char* kInseparable =
       "the readings do not tell the variance factor from the pose noise: only poses with several readings do";
   static constexpr const char* kInseparableBlocks =
-      "the readings do not tell the variance factor from the noise of a block of time: only blocks with several readings "
+      "the readings do not tell the variance factor from the noise of a block of time: only blocks with several "
+      "readings "
       "do";
   const char* inseparable() const { return choice_.by_block ? kInseparableBlocks : kInseparable; }
 
@@ -125,7 +126,8 @@ class VarianceEstimation {
     if (!choice_.pose_noise) return "";
     std::size_t most = 0;
     for (const PoseGroups* poses : poses_) most = std::max(most, poses->most_readings());
-    if (most == 0 && choice_.by_block) return "the readings do not see a displacement that is common to a block of time";
+    if (most == 0 && choice_.by_block)
+      return "the readings do not see a displacement that is common to a block of time";
     if (most == 0) return "the readings do not see a displacement at their pose: they have no pose noise";
     return choice_.variance_factor && most < 2 ? inseparable() : "";
   }

@@ -214,9 +214,8 @@ TEST(VarianceComponents, noise_common_to_a_block_is_found_over_many_draws) {
   double mean_noise = 0, squares = 0;
   for (std::size_t draw = 0; draw < kDraws; ++draw) {
     // Every reading is a pose of its own, so that poses alone would not show any common noise.
-    PoseObservations observations(kBlocks * kPerBlock, [&] {
-      return PoseObservations::simulate(100 + draw, kBlocks, kPerBlock, 1.44, 0.03);
-    }());
+    PoseObservations observations(
+        kBlocks * kPerBlock, [&] { return PoseObservations::simulate(100 + draw, kBlocks, kPerBlock, 1.44, 0.03); }());
     Problem problem = function_problem({&observations});
     for (std::size_t k = 0; k < kBlocks * kPerBlock; ++k) problem.observations[0].common.push_back(k % kBlocks);
     const WeighedIdentification found =

@@ -114,8 +114,7 @@ TEST(SetupDrift, DerivativesOfTrackersEqualDifferences) {
     const std::vector<bool> angles = parameters_are_angles(machine, errors);
     for (std::size_t column = 0; column < start.size() + setup.size(); ++column) {
       const bool of_machine = column < start.size();
-      const bool is_angle =
-          of_machine ? angles[column] : observations->unknowns()[column - start.size()].is_angle;
+      const bool is_angle = of_machine ? angles[column] : observations->unknowns()[column - start.size()].is_angle;
       const double step = is_angle ? 1e-6 : 1e-3;
       for (double* side : {above.data(), below.data()}) {
         std::vector<double> moved = start, moved_setup = setup;
@@ -137,7 +136,8 @@ TEST(SetupDrift, IsAStationThatStandsElsewhere) {
   const ErrorSet errors = test::some_errors(machine);
   const Eigen::Vector3d at(900, 700, 150), turn(0.2, -0.1, 2);
   const std::shared_ptr<SetupDrift> drift = some_drift(at);
-  const auto tracker = std::make_shared<const LaserTracker>("tracker", one_station(at, turn), TrackerMeasure::cartesian);
+  const auto tracker =
+      std::make_shared<const LaserTracker>("tracker", one_station(at, turn), TrackerMeasure::cartesian);
   InstrumentSimulationOptions options;
   options.noise_factor = 0;
   options.line_of_sight = false;

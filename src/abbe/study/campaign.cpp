@@ -88,8 +88,7 @@ std::vector<PlannedReadings> plans_of(const Study& study, std::size_t setup_inde
   const Setup& setup = study.setups[setup_index];
   std::vector<PlannedReadings> plans;
   for (std::size_t p = 0; p < setup.plans.size(); ++p) {
-    plans.push_back(
-        planned_readings(study.machine, setup, setup.plans[p], plan_seed(study, setup_index, p), channels));
+    plans.push_back(planned_readings(study.machine, setup, setup.plans[p], plan_seed(study, setup_index, p), channels));
   }
   return plans;
 }

@@ -96,8 +96,8 @@ ChosenTerms choose_terms(const Study& study, const Campaign& campaign, const Pro
   std::vector<std::vector<double>> times;
   for (const CampaignSetup& setup : campaign.setups) {
     if (setup.readings.time_s.empty()) {
-      throw InputError({.field = setup.name}, "terms with states are chosen by blocks of time, and readings have no times",
-                       "a column time_s");
+      throw InputError({.field = setup.name},
+                       "terms with states are chosen by blocks of time, and readings have no times", "a column time_s");
     }
     times.push_back(setup.readings.time_s);
   }

@@ -82,9 +82,10 @@ std::string knots_text(const StudyResult& result) {
                                      [&](int component) { return (component >= 3) == is_angle; });
         const double left = has ? walk_between_knots(setup, place, intensity_of(result, s, place, is_angle)) : 0;
         if (!(left > 0)) continue;
-        text += fmt::format("  {}: between its knots the walk may differ by {:.2g} {} (standard deviation) from "
-                            "straight lines; more `knots` make it less\n",
-                            place.name, micro_per_unit(is_angle) * left, micro_unit(is_angle));
+        text += fmt::format(
+            "  {}: between its knots the walk may differ by {:.2g} {} (standard deviation) from "
+            "straight lines; more `knots` make it less\n",
+            place.name, micro_per_unit(is_angle) * left, micro_unit(is_angle));
       }
     }
   }
@@ -118,10 +119,14 @@ std::vector<FoundDrift> found_drifts(const StudyResult& result) {
     for (std::size_t p = 0; p < drift->places.size(); ++p) {
       const DriftingPlace& place = drift->places[p];
       for (std::size_t c = 0; c < place.components.size(); ++c) {
-        const DriftEstimates of = estimates_of(result.identification, s, before + drift->first_unknown(p, c),
-                                               place.functions());
-        FoundDrift one{.place = place.name, .setup = setup.name, .component = place.components[c], .time_s = {},
-                       .value = {}, .expanded = {}};
+        const DriftEstimates of =
+            estimates_of(result.identification, s, before + drift->first_unknown(p, c), place.functions());
+        FoundDrift one{.place = place.name,
+                       .setup = setup.name,
+                       .component = place.components[c],
+                       .time_s = {},
+                       .value = {},
+                       .expanded = {}};
         Eigen::VectorXd weights(static_cast<Eigen::Index>(place.functions()));
         for (const double time : times_of(place)) {
           drift_functions(place, time, weights.data());
@@ -163,8 +168,8 @@ nlohmann::ordered_json drift_json(const StudyResult& result) {
   json["places"] = nlohmann::ordered_json::array();
   for (const FoundDrift& one : found_drifts(result)) {
     const std::string unit = micro_unit(one.is_angle());
-    nlohmann::ordered_json entry = {{"setup", one.setup}, {"place", one.place},
-                                    {"motion", drift_component_name(one.component)}};
+    nlohmann::ordered_json entry = {
+        {"setup", one.setup}, {"place", one.place}, {"motion", drift_component_name(one.component)}};
     for (std::size_t i = 0; i < one.time_s.size(); ++i) {
       entry["time_h"].push_back(one.time_s[i] / kHour);
       entry["value_" + unit].push_back(micro_per_unit(one.is_angle()) * one.value[i]);
@@ -177,8 +182,8 @@ nlohmann::ordered_json drift_json(const StudyResult& result) {
     const std::string name = std::string(micro_unit(walk.is_angle)) + "_per_sqrt_h";
     nlohmann::ordered_json entry = {{"name", walk.name}, {"none_found", walk.at_zero}};
     entry[name] = walk.at_zero ? 0.0 : per_hour * sigma;
-    entry["standard_uncertainty_" + name] =
-        per_hour * (walk.at_zero ? std::sqrt(2 * walk.variance_uncertainty) / 2 : walk.variance_uncertainty / (2 * sigma));
+    entry["standard_uncertainty_" + name] = per_hour * (walk.at_zero ? std::sqrt(2 * walk.variance_uncertainty) / 2
+                                                                     : walk.variance_uncertainty / (2 * sigma));
     json["random_walks"].push_back(entry);
   }
   return json;

@@ -10,9 +10,9 @@ namespace abbe {
 
 /// How far one motion of a place has drifted since the first reading, at some times.
 struct FoundDrift {
-  std::string place;    ///< "S1"
+  std::string place;  ///< "S1"
   std::string setup;
-  int component = 0;    ///< as in DriftingPlace
+  int component = 0;             ///< as in DriftingPlace
   std::vector<double> time_s;    ///< since the first reading
   std::vector<double> value;     ///< mm or rad
   std::vector<double> expanded;  ///< k = 2

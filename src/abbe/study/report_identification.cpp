@@ -96,9 +96,8 @@ std::string noise_words(const Setup& setup) {
 }
 
 const char* common_noise_of(const VarianceComponents& components) {
-  return components.estimated.by_block
-             ? "Noise of a block of time (a displacement common to all readings in it)"
-             : "Pose noise (a displacement common to all readings at one pose)";
+  return components.estimated.by_block ? "Noise of a block of time (a displacement common to all readings in it)"
+                                       : "Pose noise (a displacement common to all readings at one pose)";
 }
 
 /// What was found about the variances of the readings, and what that means.
@@ -114,9 +113,8 @@ void variance_assumptions(const StudyResult& result, std::vector<std::string>& l
         components.variance.factor, components.variance_factor_uncertainty()));
   }
   if (components.pose_noise_at_zero) {
-    list.push_back(
-        fmt::format("{}: none found, not above {:.3g} um (k = 2).", common_noise_of(components),
-                    1e3 * components.pose_noise_uncertainty()));
+    list.push_back(fmt::format("{}: none found, not above {:.3g} um (k = 2).", common_noise_of(components),
+                               1e3 * components.pose_noise_uncertainty()));
   } else if (components.estimated.pose_noise) {
     list.push_back(fmt::format(
         "{}: {:.4g} um in every direction, standard uncertainty {:.2g} um. It stands for errors of the machine that "

@@ -30,7 +30,9 @@ ProbeBeam probe_beam(const Machine& machine, const Eigen::Vector3d& zero,
 }
 
 LeftOutPoses ScannedPoints::left_out() const {
-  return {.all = summary.readings, .not_covered = summary.not_covered, .what = "readings",
+  return {.all = summary.readings,
+          .not_covered = summary.not_covered,
+          .what = "readings",
           .extrapolated = at_state.outside};
 }
 

@@ -96,8 +96,8 @@ std::shared_ptr<const SetupDrift> assumed_drift(const DriftPlan& plan, const Ins
     DriftingPlace& one = drift->places.emplace_back(place_of(plan, device, s));
     if (times[s].empty()) continue;
     if (times[s].size() < 2) {
-      throw InputError({.file = place, .field = "drift"}, fmt::format("all readings of {} have the same time", one.name),
-                       "readings over a span of time");
+      throw InputError({.file = place, .field = "drift"},
+                       fmt::format("all readings of {} have the same time", one.name), "readings over a span of time");
     }
     one.components = plan.components;
     one.start_s = times[s].front();
@@ -185,10 +185,10 @@ void take_drift_of(const CampaignSetup& setup, const std::string& file, Instrume
     const DriftingPlace& place = setup.readings.drift->places[setup.start->station_of(readings.item[k])];
     const double time = readings.time_s[k];
     if (place.components.empty() || (time >= place.start_s && time <= place.end_s)) continue;
-    throw InputError({.file = file, .field = "time_s"},
-                     fmt::format("reading {} was taken at {:.6g} s, when the drift of {} is not known", k + 1, time,
-                                 place.name),
-                     fmt::format("times from {:.6g} to {:.6g} s", place.start_s, place.end_s));
+    throw InputError(
+        {.file = file, .field = "time_s"},
+        fmt::format("reading {} was taken at {:.6g} s, when the drift of {} is not known", k + 1, time, place.name),
+        fmt::format("times from {:.6g} to {:.6g} s", place.start_s, place.end_s));
   }
   readings.drift = setup.readings.drift;
 }

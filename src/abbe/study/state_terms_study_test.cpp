@@ -16,6 +16,8 @@
 #include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/message_of.h"
+#include "abbe/identify/identify.h"
+#include "abbe/identify/time_blocks.h"
 #include "abbe/study/errors_map.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/study_steps.h"
@@ -83,7 +85,8 @@ std::filesystem::path warm_folder(const char* name) {
   return folder;
 }
 
-std::string warm_study(const std::string& identify, const std::string& plan = "kind = \"poses\"\nfile = \"poses.csv\"\n") {
+std::string warm_study(const std::string& identify,
+                       const std::string& plan = "kind = \"poses\"\nfile = \"poses.csv\"\n") {
   return fmt::format(R"(machine = "warm.machine.toml"
 [simulate]
 errors = "truth.errors.toml"
@@ -177,6 +180,7 @@ TEST(StateTerms, TheOnesThatDriveErrorsAreTaken) {
     EXPECT_TRUE(taken.contains("EC0Y*column")) << draw;
     false_terms += taken.size() - (taken.contains("EXX*ambient") ? 1U : 0U) - (taken.contains("EC0Y*column") ? 1U : 0U);
     EXPECT_LT(result.terms->selection.last_rms, 0.8 * result.terms->selection.first_rms);
+    EXPECT_LT(result.terms->selection.levels.front(), 3U);  // EXX*ambient is of order 1
   }
   RecordProperty("terms_without_effect_taken_in_20_draws", static_cast<int>(false_terms));
   // 19 candidates without effect in each of 20 studies.
@@ -188,21 +192,53 @@ TEST(StateTerms, AreReportedAndTheOthersAreNoErrorsOfTheMachine) {
   const Study study = warm(folder, warm_study(std::string("time_blocks = 16\ntime_gap_min = 6\n") + kCandidates), 41);
   const StudyResult result = run_study(study);
   ASSERT_TRUE(result.usable()) << result.identification.message;
-  const std::string text = study_text(study, result);
+  const std::string text = study_text(study, result, nullptr);
   EXPECT_THAT(text, HasSubstr("terms with states chosen by 16 held-out blocks of time"));
   EXPECT_THAT(text, HasSubstr("with EXX*ambient"));
-  EXPECT_THAT(text, HasSubstr("in blocks without a break in time"));
-  EXPECT_THAT(errors_text(study.machine, identified_errors_file(study, result)), Not(HasSubstr("EZZ")));
+  EXPECT_THAT(errors_text(study.machine, identified_errors_file(study, result)), Not(HasSubstr("name = \"EZZ\"")));
   const nlohmann::ordered_json json = study_summary(study, result);
   EXPECT_EQ(json["terms_with_states"]["blocks_of_time"], 16);
   EXPECT_LT(json["terms_with_states"]["held_out_rms"].get<double>(), 1.2);
-  EXPECT_GT(json["terms_with_states"]["held_out_rms_without"].get<double>(), 1.5);
+  EXPECT_GT(json["terms_with_states"]["held_out_rms_without"].get<double>(), 1.3);
+}
+
+/// The held-out error of the chosen model, every block predicted by an identification of its own.
+TEST(StateTerms, HeldOutErrorsAreThoseOfIdentificationsWithoutTheirBlocks) {
+  const std::filesystem::path folder = warm_folder("state_terms_refitted");
+  const Study study =
+      warm(folder, warm_study(std::string("held_out_fraction = 0\ntime_gap_min = 10\n") + kCandidates), 44);
+  StudyResult result;
+  result.campaign = gather_readings(study);
+  prepare_study(study, result);
+  const std::vector<TimeBlocks> blocks = divide_by_time({result.campaign.setups[0].readings.time_s}, 20, 600);
+  Problem& problem = result.model.problem;
+  double mean = 0;
+  for (std::size_t b = 0; b < 20; ++b) {
+    Problem training = problem;
+    std::vector<std::uint8_t>& use = training.observations[0].use;
+    use.clear();
+    for (std::size_t k = 0; k < blocks[0].block.size(); ++k) {
+      use.push_back(blocks[0].block[k] != b && blocks[0].near[k * 20 + b] == 0 ? 1 : 0);
+    }
+    EXPECT_GE(std::count(use.begin(), use.end(), 0), 24 + 9);
+    const Identification found = identify(training);
+    ASSERT_EQ(found.status, IdentifyStatus::converged);
+    const std::vector<double> residuals = residuals_by_reading(*training.observations[0].observations);
+    double sum = 0, count = 0;
+    for (std::size_t k = 0; k < use.size(); ++k) {
+      if (blocks[0].block[k] != b) continue;
+      for (std::size_t row = 0; row < 3; ++row) sum += residuals[3 * k + row] * residuals[3 * k + row], count += 1;
+    }
+    mean += sum / count / 20;
+  }
+  EXPECT_NEAR(result.terms->selection.last_rms / std::sqrt(mean), 1, 1e-4);
 }
 
 /// A term that the model lacks makes neighbours in time alike: held-out readings are whole blocks.
 TEST(StateTerms, HeldOutReadingsAreBlocksOfTime) {
   const std::filesystem::path folder = warm_folder("state_held_out");
-  const std::string term = "[[identify.motion]]\nerrors = \"EXX\"\nstate = \"ambient\"\nbasis = \"legendre\"\norder = 1\n";
+  const std::string term =
+      "[[identify.motion]]\nerrors = \"EXX\"\nstate = \"ambient\"\nbasis = \"legendre\"\norder = 1\n";
   Study study = warm(folder, warm_study("held_out_fraction = 0.15\n" + term));
   StudyResult result;
   result.campaign = gather_readings(study);
@@ -276,7 +312,10 @@ TEST(StateTerms, CampaignsAtDifferentTemperaturesTogetherFindGrowthThatNeitherFi
     poses << "time_s,X_mm,Y_mm,Z_mm\n";
     RandomStream random(4);
     for (int k = 0; k < 60; ++k) {
-      poses << fmt::format("{},{:.3f},{:.3f},{:.3f}\n", 120 * k, k == 0 ? 0 : k == 1 ? 600 : random.uniform(0, 600),
+      poses << fmt::format("{},{:.3f},{:.3f},{:.3f}\n", 120 * k,
+                           k == 0   ? 0
+                           : k == 1 ? 600
+                                    : random.uniform(0, 600),
                            random.uniform(0, 400), random.uniform(0, 300));
     }
   }
@@ -291,9 +330,10 @@ TEST(StateTerms, CampaignsAtDifferentTemperaturesTogetherFindGrowthThatNeitherFi
   for (const char* left_out : {"cold", "warm"}) {
     const Study alone = warm(folder, two_campaigns(left_out), 5);
     const StudyResult result = run_study(alone);
-    bool said = false;
-    for (const std::string& warning : result.warnings) said = said || warning.find("EXX*ambient[P1]") != std::string::npos;
-    EXPECT_TRUE(said) << study_text(alone, result);
+    EXPECT_THAT(result.warnings,
+                testing::Contains(HasSubstr("at all readings: errors with this state cannot be told")));
+    EXPECT_THAT(study_text(alone, result, nullptr), HasSubstr("EC0Y, EC0Y*column"));
+    EXPECT_GT(result.identification.gauge.constraints.size(), 0U);
   }
   const Study joint = warm(folder, two_campaigns(""), 5);
   const StudyResult result = run_study(joint);
@@ -349,9 +389,14 @@ urad_per_sqrt_day = 1
   const ErrorsMap aged = map_at({"ambient_degC=24", "days_since_measurement=9"});
   EXPECT_GT(largest(aged), 3e-3);
   EXPECT_THAT(errors_map_text(aged), HasSubstr("days_since_measurement = 9"));
-  EXPECT_THAT(message_of([&] { map_at({"ambient_degC=24", "days_since_measurement=-1"}); }), HasSubstr("number of days"));
-  EXPECT_THAT(message_of([&] { read_errors_at(folder / "truth.errors.toml", machine,
-                                              {"ambient_degC=24", "column_degC=22", "days_since_measurement=1"}); }),
+  EXPECT_THAT(message_of([&] {
+                map_at({"ambient_degC=24", "days_since_measurement=-1"});
+              }),
+              HasSubstr("number of days"));
+  EXPECT_THAT(message_of([&] {
+                read_errors_at(folder / "truth.errors.toml", machine,
+                               {"ambient_degC=24", "column_degC=22", "days_since_measurement=1"});
+              }),
               HasSubstr("[ageing]"));
 }
 

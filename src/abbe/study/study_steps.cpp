@@ -11,6 +11,7 @@
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/study/coverage.h"
 #include "abbe/study/setup_drifts.h"
+#include "abbe/study/state_ranges.h"
 #include "abbe/verify/known_range.h"
 #include "abbe/verify/volumetric_figures.h"
 
@@ -120,6 +121,14 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     result.warnings.push_back(
         "some errors depend on states; figures and maps are those at the references of the states: " + references +
         " (map poses of a file: at the states that it gives)");
+  }
+  for (const CoveredState& state : covered_states(study, result)) {
+    if (state.to - state.from > 1e-9 * (1 + std::abs(state.to))) continue;
+    result.warnings.push_back(fmt::format(
+        "{} is {:.6g} at all readings: errors with this state cannot be told from those without it, and "
+        "what is stated of them apart from each other is a convention; readings at another value would show "
+        "them",
+        state.column, state.to));
   }
   result.not_identified = find_not_identified(study, result);
   result.volumetric = study_volumetric_figures(study, result);

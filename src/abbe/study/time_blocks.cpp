@@ -5,7 +5,7 @@
 
 #include "abbe/errors/error_states.h"
 #include "abbe/formats/text/input_error.h"
-#include "abbe/identify/term_selection.h"
+#include "abbe/identify/time_blocks.h"
 
 namespace abbe {
 namespace {

@@ -1,4 +1,3 @@
-#include "abbe/study/state_ranges.h"
 #include "abbe/study/trust.h"
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 #include "abbe/identify/trust/outlier_clusters.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/identify/trust/repeated_readings.h"
+#include "abbe/study/state_ranges.h"
 #include "abbe/study/study_result.h"
 #include "abbe/study/summary.h"
 

@@ -141,6 +141,25 @@ std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machin
   return ranges;
 }
 
+namespace {
+
+/// Intensities of walks are estimated by joint least squares, with the readings' uncertainties as stated.
+void refuse_walks_beside_others(const TomlTable& root, const Study& study) {
+  if (!study.identification) return;
+  const IdentificationPlan& plan = *study.identification;
+  const bool plain = plan.loss == LossKind::none && plan.strategy == Strategy::joint &&
+                     !plan.estimate_variance_factor && !plan.estimate_pose_noise && !plan.estimate_block_noise;
+  for (const Setup& setup : study.setups) {
+    if (plain || !setup.drift || !setup.drift->estimate_walk) continue;
+    root.fail("identify",
+              fmt::format("the random walk of {} is estimated beside other variances, a robust loss or in two steps",
+                          setup.name),
+              "random_walk = \"stated\"; or strategy, loss, variance_factor, pose_noise and block_noise as by default");
+  }
+}
+
+}  // namespace
+
 Study parse_study(const std::string& text, const std::filesystem::path& path, const Machine& machine,
                   ReadingsSource source) {
   TomlTable root = TomlTable::parse(text, path.string());
@@ -169,6 +188,7 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
   if (auto table = root.optional_table("map")) study.map = read_map(*table, folder, machine);
   if (auto table = root.optional_table("report")) study.report = read_report(*table, folder);
   root.finish();
+  refuse_walks_beside_others(root, study);
   if (study.identification && study.setups.empty()) root.fail("identify", "there are no readings", "a [[setup]]");
   if (study.setups.empty() && !study.map) root.fail("", "nothing to do", "[[setup]] and [identify], or [map]");
   return study;

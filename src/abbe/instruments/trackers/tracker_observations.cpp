@@ -152,8 +152,7 @@ struct TrackerObservations::Implementation {
 
 void TrackerObservations::Implementation::move(const Members& members, std::size_t first, TrackerScratch& s) const {
   for (std::size_t k = 0; k < members.count; ++k) {
-    const Eigen::Vector3d seen =
-        drift.seen(first + members.at[k], {s.unmoved[0][k], s.unmoved[1][k], s.unmoved[2][k]});
+    const Eigen::Vector3d seen = drift.seen(first + members.at[k], {s.unmoved[0][k], s.unmoved[1][k], s.unmoved[2][k]});
     for (int c = 0; c < 3; ++c) s.seen[c][k] = seen[c];
   }
 }
