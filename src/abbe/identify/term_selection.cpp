@@ -13,8 +13,8 @@ namespace {
 
 using Index = Eigen::Index;
 constexpr double kUndetermined = 1e-11;  // eigenvalue of the scaled normal matrix: below is rounding
-constexpr double kSeen = 1e-7;           // share of a block's information along a direction that the others leave open
-constexpr double kNothingLeft = 1e-6;    // mean squared residual, in variances of the readings: rounding
+constexpr double kSeenByBlock = 1e-7;    // share of a block's information along a direction that the others leave open
+constexpr double kExactReadings = 1e-6;  // mean squared residual, in variances of the readings: rounding
 
 /// Normal equations of one block, and of all readings that may predict it.
 struct BlockSums {
@@ -58,7 +58,7 @@ class TermSearch {
 
   /// Takes the best term, if it is worth it.
   bool take_one() {
-    if (mean_square() < kNothingLeft) return false;
+    if (mean_square() < kExactReadings) return false;
     const std::vector<Trial> trials = tried();
     std::vector<double> dispersions;
     for (const Trial& trial : trials) dispersions.push_back(trial.dispersion);
@@ -215,7 +215,7 @@ class TermSearch {
     for (Index i = 0; i < axes.cols(); ++i) {
       if (eigen.eigenvalues()[i] > kUndetermined) {
         inverse[i] = 1 / eigen.eigenvalues()[i];
-      } else if (axes.col(i).dot(own * axes.col(i)) > kSeen) {
+      } else if (axes.col(i).dot(own * axes.col(i)) > kSeenByBlock) {
         result_of_block.usable = false;
       }
     }

@@ -11,7 +11,7 @@
 namespace abbe {
 namespace {
 
-constexpr double kHour = 3600;
+constexpr double kDriftHour_s = 3600;
 constexpr int kTimesShown = 7;
 
 std::vector<double> times_of(const DriftingPlace& place) {
@@ -60,7 +60,7 @@ double intensity_of(const StudyResult& result, std::size_t s, const DriftingPlac
 }
 
 std::string walk_text(const EstimatedWalk& walk) {
-  const double per_hour = micro_per_unit(walk.is_angle) * std::sqrt(kHour), sigma = std::sqrt(walk.variance);
+  const double per_hour = micro_per_unit(walk.is_angle) * std::sqrt(kDriftHour_s), sigma = std::sqrt(walk.variance);
   const char* const unit = micro_unit(walk.is_angle);
   if (walk.at_zero) {
     return fmt::format("  {}: no random walk found; not above {:.3g} {}/sqrt(h) (k = 2)\n", walk.name,
@@ -153,9 +153,10 @@ std::string drift_text(const StudyResult& result) {
     }
     text += fmt::format("  {:<24} {:>9.2f} {} after {:.3g} h, expanded uncertainty {:.2g} (k = 2)",
                         one.place + " " + drift_component_name(one.component), unit * one.value.back(),
-                        micro_unit(one.is_angle()), one.time_s.back() / kHour, unit * one.expanded.back());
+                        micro_unit(one.is_angle()), one.time_s.back() / kDriftHour_s, unit * one.expanded.back());
     if (largest + 1 < one.value.size()) {
-      text += fmt::format("; most {:.2f} after {:.3g} h", unit * one.value[largest], one.time_s[largest] / kHour);
+      text +=
+          fmt::format("; most {:.2f} after {:.3g} h", unit * one.value[largest], one.time_s[largest] / kDriftHour_s);
     }
     text += "\n";
   }
@@ -171,14 +172,14 @@ nlohmann::ordered_json drift_json(const StudyResult& result) {
     nlohmann::ordered_json entry = {
         {"setup", one.setup}, {"place", one.place}, {"motion", drift_component_name(one.component)}};
     for (std::size_t i = 0; i < one.time_s.size(); ++i) {
-      entry["time_h"].push_back(one.time_s[i] / kHour);
+      entry["time_h"].push_back(one.time_s[i] / kDriftHour_s);
       entry["value_" + unit].push_back(micro_per_unit(one.is_angle()) * one.value[i]);
       entry["expanded_uncertainty_" + unit].push_back(micro_per_unit(one.is_angle()) * one.expanded[i]);
     }
     json["places"].push_back(entry);
   }
   for (const EstimatedWalk& walk : result.walks) {
-    const double per_hour = micro_per_unit(walk.is_angle) * std::sqrt(kHour), sigma = std::sqrt(walk.variance);
+    const double per_hour = micro_per_unit(walk.is_angle) * std::sqrt(kDriftHour_s), sigma = std::sqrt(walk.variance);
     const std::string name = std::string(micro_unit(walk.is_angle)) + "_per_sqrt_h";
     nlohmann::ordered_json entry = {{"name", walk.name}, {"none_found", walk.at_zero}};
     entry[name] = walk.at_zero ? 0.0 : per_hour * sigma;

@@ -65,7 +65,7 @@ value_urad = 30
 [[location]]
 name = "EC0Y"
 state = "column"
-value_urad = 4
+value_urad = 7
 )";
 
 /// Temperatures over eight hours: two that drive errors, one that drives none; slowly varying, as temperatures are.
@@ -176,15 +176,17 @@ TEST(StateTerms, TheOnesThatDriveErrorsAreTaken) {
     ASSERT_EQ(result.terms->candidates.size(), 21U);
     std::multiset<std::string> taken;
     for (const TakenTerm& one : result.terms->selection.taken) taken.insert(result.terms->candidates[one.candidate]);
-    EXPECT_TRUE(taken.contains("EXX*ambient")) << draw;
-    EXPECT_TRUE(taken.contains("EC0Y*column")) << draw;
-    false_terms += taken.size() - (taken.contains("EXX*ambient") ? 1U : 0U) - (taken.contains("EC0Y*column") ? 1U : 0U);
+    // A slope of the straightness EXY with the temperature is the same as a squareness with it.
+    const std::size_t squareness = taken.count("EC0Y*column") + taken.count("EXY*column");
+    EXPECT_TRUE(taken.contains("EXX*ambient")) << draw << ": " << testing::PrintToString(taken);
+    EXPECT_GE(squareness, 1U) << draw << ": " << testing::PrintToString(taken);
+    false_terms += taken.size() - taken.count("EXX*ambient") - squareness;
     EXPECT_LT(result.terms->selection.last_rms, 0.8 * result.terms->selection.first_rms);
     EXPECT_LT(result.terms->selection.levels.front(), 3U);  // EXX*ambient is of order 1
   }
   RecordProperty("terms_without_effect_taken_in_20_draws", static_cast<int>(false_terms));
-  // 19 candidates without effect in each of 20 studies.
-  EXPECT_LE(false_terms, 20U);
+  // 19 candidates without effect in each of 20 studies, at 5 % in all of one study.
+  EXPECT_LE(false_terms, 4U);
 }
 
 TEST(StateTerms, AreReportedAndTheOthersAreNoErrorsOfTheMachine) {
@@ -343,7 +345,7 @@ TEST(StateTerms, CampaignsAtDifferentTemperaturesTogetherFindGrowthThatNeitherFi
   EXPECT_GT(u, 0);
   EXPECT_LT(u, 0.2e-3);
   EXPECT_NEAR(number(found, "EXX*ambient[P1]", false), 3e-3, 4 * u);
-  EXPECT_NEAR(number(found, "EC0Y*column", false), 4e-6, 4 * number(found, "EC0Y*column", true));
+  EXPECT_NEAR(number(found, "EC0Y*column", false), 7e-6, 4 * number(found, "EC0Y*column", true));
   EXPECT_NEAR(number(found, "EXX[P1]", false), 9e-3, 4 * number(found, "EXX[P1]", true));
 }
 

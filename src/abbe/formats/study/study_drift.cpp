@@ -10,7 +10,7 @@ namespace abbe {
 namespace {
 
 constexpr int kLargestDriftDegree = 3, kMostKnots = 200, kUsualKnots = 24;
-constexpr double kHour = 3600;
+constexpr double kDriftHour = 3600;
 constexpr double kUsualWalk = 1e-3;  // mm/sqrt(h): where an estimate starts; turns: rad/sqrt(h) per metre of it
 
 /// "random_walk_um_per_sqrt_h" in mm/sqrt(s), "random_walk_urad_per_sqrt_h" in rad/sqrt(s).
@@ -19,7 +19,7 @@ std::optional<double> read_walk(TomlTable& table, const char* unit) {
   const std::optional<double> value = table.optional_number(key, Quantity::dimensionless);
   if (!value) return std::nullopt;
   if (!(*value > 0)) table.fail(key, "is not above zero", "how far it wanders in an hour, for example 3");
-  return *value / std::sqrt(kHour) * (unit == std::string("um") ? 1e-3 : 1e-6);
+  return *value / std::sqrt(kDriftHour) * (unit == std::string("um") ? 1e-3 : 1e-6);
 }
 
 std::vector<int> read_drift_components(TomlTable& table) {
@@ -68,8 +68,8 @@ void read_random_walk(TomlTable& table, DriftPlan& plan) {
   if (word == 0 && (length || angle)) {
     table.fail("random_walk", "is \"none\" beside an intensity", "random_walk = \"stated\" or \"estimated\"");
   }
-  plan.walk_length = length.value_or(kUsualWalk / std::sqrt(kHour));
-  plan.walk_angle = angle.value_or(1e-3 * kUsualWalk / std::sqrt(kHour));
+  plan.walk_length = length.value_or(kUsualWalk / std::sqrt(kDriftHour));
+  plan.walk_angle = angle.value_or(1e-3 * kUsualWalk / std::sqrt(kDriftHour));
   if (!plan.walks || plan.estimate_walk) {
     if (!plan.walks && table.has("random_walk") && word == 1) {
       table.fail("random_walk", "is \"stated\", and no intensity is", "random_walk_um_per_sqrt_h = 3");

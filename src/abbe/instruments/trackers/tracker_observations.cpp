@@ -8,7 +8,9 @@
 #include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/instruments/trackers/tracker_drift.h"
 #include "abbe/instruments/trackers/tracker_residual.h"
+#include "abbe/instruments/trackers/tracker_scratch.h"
 #include "abbe/instruments/trackers/tracker_whitening.h"
 
 namespace abbe {
@@ -28,20 +30,6 @@ struct Members {
   std::size_t count = 0;
   bool whole_block = false;
   std::uint16_t at[Observations::kBlockSize];  ///< index in the block
-};
-
-/// Working memory of one thread, grown once and kept.
-struct TrackerScratch {
-  static constexpr std::size_t kBlock = Observations::kBlockSize;
-  std::vector<double> positions;  ///< [axes][kBlock]
-  std::vector<const double*> axis;
-  std::vector<double> states;  ///< [states that are given][kBlock]
-  std::vector<const double*> state;
-  std::vector<double> jacobian;     ///< compact columns of one pair of bodies
-  std::vector<double> by_position;  ///< [axes][3][members]
-  double start[3][kBlock], seen[3][kBlock], unmoved[3][kBlock], gathered[3][kBlock], trig[4][kBlock], weight[6][kBlock];
-  double residual[3][kBlock], force[3][3][kBlock], by_start[3][3][kBlock];
-  std::uint16_t station[kBlock], reflector[kBlock];
 };
 
 TrackerScratch& tracker_scratch() {
@@ -81,28 +69,24 @@ struct TrackerObservations::Implementation {
   }
 
   void name_unknowns() {
-    static constexpr char kLetters[] = "xyz";
+    const auto add = [&](std::string name, bool is_angle, UnknownRole role, double value) {
+      unknowns.push_back({std::move(name), is_angle, is_angle ? 1e-3 : 1.0});
+      roles.push_back(role);
+      values.push_back(value);
+    };
     for (std::size_t s = 0; s < given.stations.size(); ++s) {
       const TrackerStation& station = given.stations[s];
       if (!station.estimate_pose) continue;
-      for (int k = 0; k < 3; ++k) {
-        unknowns.push_back({station.name + "." + kLetters[k], false, 1.0});
-        roles.push_back({UnknownKind::station_position, s, k});
-        values.push_back(station.body_from_tracker.translation[k]);
-      }
-      for (int k = 0; k < 3; ++k) {
-        unknowns.push_back({station.name + ".r" + kLetters[k], true, 1e-3});
-        roles.push_back({UnknownKind::station_rotation, s, k});
-        values.push_back(0.0);
-      }
+      const Eigen::Vector3d& place = station.body_from_tracker.translation;
+      for (int k = 0; k < 3; ++k)
+        add(station.name + "." + "xyz"[k], false, {UnknownKind::station_position, s, k}, place[k]);
+      for (int k = 0; k < 3; ++k) add(station.name + ".r" + "xyz"[k], true, {UnknownKind::station_rotation, s, k}, 0);
     }
     for (std::size_t r = 0; r < given.reflectors.size(); ++r) {
-      if (!given.reflectors[r].estimate_offset) continue;
-      for (int k = 0; k < 3; ++k) {
-        unknowns.push_back({given.reflectors[r].name + ".offset_" + kLetters[k], false, 1.0});
-        roles.push_back({UnknownKind::reflector_offset, r, k});
-        values.push_back(given.reflectors[r].offset[k]);
-      }
+      const Reflector& reflector = given.reflectors[r];
+      if (!reflector.estimate_offset) continue;
+      for (int k = 0; k < 3; ++k)
+        add(reflector.name + ".offset_" + "xyz"[k], false, {UnknownKind::reflector_offset, r, k}, reflector.offset[k]);
     }
   }
 
@@ -143,41 +127,7 @@ struct TrackerObservations::Implementation {
   void reversal_columns(const Members& members, std::size_t first, std::span<const std::size_t> machine_parameters,
                         const TrackerScratch& s, double* target, std::size_t stride) const;
   void setup_column(const UnknownRole& role, std::size_t count, const TrackerScratch& s, double* column) const;
-  /// The reflectors as stations see them that have moved.
-  void move(const Members& members, std::size_t first, TrackerScratch& s) const;
-  /// Columns of the drift, and forces back in the frame of the body.
-  void take_drift(const Members& members, std::size_t first, std::span<const std::size_t> setup_parameters,
-                  double* columns, std::size_t stride, TrackerScratch& s) const;
 };
-
-void TrackerObservations::Implementation::move(const Members& members, std::size_t first, TrackerScratch& s) const {
-  for (std::size_t k = 0; k < members.count; ++k) {
-    const Eigen::Vector3d seen = drift.seen(first + members.at[k], {s.unmoved[0][k], s.unmoved[1][k], s.unmoved[2][k]});
-    for (int c = 0; c < 3; ++c) s.seen[c][k] = seen[c];
-  }
-}
-
-void TrackerObservations::Implementation::take_drift(const Members& members, std::size_t first,
-                                                     std::span<const std::size_t> setup_parameters, double* columns,
-                                                     std::size_t stride, TrackerScratch& s) const {
-  for (std::size_t k = 0; k < members.count; ++k) {
-    const std::size_t reading = first + members.at[k];
-    const Eigen::Vector3d seen(s.seen[0][k], s.seen[1][k], s.seen[2][k]);
-    const Eigen::Matrix3d turn = drift.turn(reading);
-    for (std::size_t row = 0; row < 3; ++row) {
-      const Eigen::Vector3d force(s.force[row][0][k], s.force[row][1][k], s.force[row][2][k]);
-      const Eigen::Matrix<double, 6, 1> slopes = drift.slopes(reading, seen, force, Eigen::Vector3d::Zero());
-      for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
-        if (setup_parameters[i] < roles.size()) continue;
-        const std::size_t unknown = setup_parameters[i] - roles.size();
-        columns[i * stride + row * members.count + k] =
-            drift.weight(unknown, reading) * slopes[drift.component_of(unknown)];
-      }
-      const Eigen::Vector3d back = turn * force;
-      for (int c = 0; c < 3; ++c) s.force[row][c][k] = back[c];
-    }
-  }
-}
 
 void TrackerObservations::Implementation::find_members(std::size_t first, std::size_t count, std::size_t pair,
                                                        Members& members) const {
@@ -305,10 +255,7 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
   const auto& of_plan = drift.acts() ? s.unmoved : s.seen;
   const ConstPointArrays seen{of_plan[0], of_plan[1], of_plan[2]};
   pair.plan.transform(positions, start, {s.seen[0], s.seen[1], s.seen[2]});
-  if (drift.acts()) {
-    for (int c = 0; c < 3; ++c) std::copy_n(s.seen[c], n, s.unmoved[c]);
-    move(members, first, s);
-  }
+  if (drift.acts()) move_reflectors(drift, first, {members.at, n}, s.seen, s.unmoved);
   residuals_of_runs(members, jacobian != nullptr, s);
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t k = 0; k < n; ++k) residuals[row * count + members.at[k]] = s.residual[row][k];
@@ -332,7 +279,10 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
     if (setup_parameters[i] >= roles.size() || is_of_reflector(setup_parameters[i])) continue;
     setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target_stride);
   }
-  if (drift.acts()) take_drift(members, first, setup_parameters, setup_target, target_stride, s);
+  if (drift.acts()) {
+    take_tracker_drift(drift, first, {members.at, n}, s.seen,
+                       {setup_parameters, roles.size(), setup_target, target_stride}, s.force);
+  }
   const bool by_start_wanted = std::any_of(setup_parameters.begin(), setup_parameters.end(), is_of_reflector);
   RowArrays rows[3];
   PointArrays by_start[3];
@@ -493,12 +443,10 @@ bool TrackerObservations::displacement_rows(std::size_t first, std::size_t count
     own.load(members, first, s);
     own.pairs[pair].plan.transform({s.axis, members.count, s.state}, {s.start[0], s.start[1], s.start[2]},
                                    {s.seen[0], s.seen[1], s.seen[2]});
-    if (own.drift.acts()) {
-      for (int c = 0; c < 3; ++c) std::copy_n(s.seen[c], members.count, s.unmoved[c]);
-      own.move(members, first, s);
-    }
+    const std::span<const std::uint16_t> at(members.at, members.count);
+    if (own.drift.acts()) move_reflectors(own.drift, first, at, s.seen, s.unmoved);
     own.residuals_of_runs(members, true, s);
-    if (own.drift.acts()) own.take_drift(members, first, {}, nullptr, 0, s);
+    if (own.drift.acts()) take_tracker_drift(own.drift, first, at, s.seen, {}, s.force);
     for (std::size_t direction = 0; direction < 3; ++direction) {
       for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t k = 0; k < members.count; ++k) {
