@@ -210,7 +210,7 @@ TEST(VarianceComponents, that_do_not_settle_are_no_result) {
 
 /// Readings in blocks that have nothing to do with their poses: reading k belongs to block k % blocks.
 TEST(VarianceComponents, noise_common_to_a_block_is_found_over_many_draws) {
-  constexpr std::size_t kBlocks = 40, kPerBlock = 5, kDraws = 60;
+  constexpr std::size_t kBlocks = 40, kPerBlock = 5, kDraws = 40;
   double mean_noise = 0, squares = 0;
   for (std::size_t draw = 0; draw < kDraws; ++draw) {
     // Every reading is a pose of its own, so that poses alone would not show any common noise.
