@@ -48,7 +48,7 @@ void add_plan_command(CommandLine& line) {
         fmt::print("{}", study_plan_text(study, result));
         if (done && !options->output.empty()) fmt::print("\n{} written\n", options->output);
       }
-      return done ? kDone : kNegative;
+      return done && !leaves_states_open(result) ? kDone : kNegative;
     };
   });
 }

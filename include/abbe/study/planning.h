@@ -15,6 +15,8 @@
 #include "abbe/plan/readings/planning.h"
 #include "abbe/study/job_options.h"
 #include "abbe/study/not_identified.h"
+#include "abbe/study/planned_states.h"
+#include "abbe/study/sensor_selection.h"
 
 namespace abbe {
 
@@ -24,9 +26,17 @@ struct CandidateReading {
   std::size_t setup = 0;       ///< index into Study::setups
   std::size_t item = 0;        ///< index into Instrument::items()
   std::vector<double> inputs;  ///< [Instrument::inputs()]
+  std::size_t condition = 0;   ///< index into PlannedStates::conditions()
   bool operator<(const CandidateReading& other) const {
-    return std::tie(pose, setup, item, inputs) < std::tie(other.pose, other.setup, other.item, other.inputs);
+    return std::tie(pose, setup, item, inputs, condition) <
+           std::tie(other.pose, other.setup, other.item, other.inputs, other.condition);
   }
+};
+
+/// Poses under one condition.
+struct PosesAt {
+  PoseList poses;
+  std::size_t condition = 0;
 };
 
 /// The identification problem of a study as far as it can be set up before anything is measured: all errors zero,
@@ -51,23 +61,33 @@ class PlanningModel {
   /// What could be read at poses. Rows over the vector of estimates.
   /// @param sight  [poses] the one sight used at each, modulo sight_count(); empty: every one
   Candidates readings_at(const PoseList& poses, const std::vector<std::size_t>& sight = {}) const;
+  /// The same at several conditions.
+  Candidates readings_at(const std::vector<PosesAt>& tried, const std::vector<std::size_t>& sight = {}) const;
+  /// Rows of readings that were candidates, at states of their own, in the order of the set-ups.
+  /// @param states  [readings][states of the machine]
+  PlanningCandidates rows_of(const std::vector<CandidateReading>& readings,
+                             const std::vector<std::vector<double>>& states) const;
 
   /// [poses] true where the functional point stands in a forbidden box.
   std::vector<bool> forbidden(const PoseList& poses) const;
 
   /// Deviation of the tool's functional point in the workpiece frame, best-fit rigid motion over all poses removed, as
-  /// rows over the vector of estimates: [3 poses, p], mm per mm or rad.
+  /// rows over the vector of estimates: [3 poses, p], mm per mm or rad. The poses have states where errors have them.
   Eigen::MatrixXd prediction_rows(const PoseList& poses) const;
   /// Rows of named parameters in um or urad, for goal = "parameters". @throws InputError if a pattern matches nothing
   Eigen::MatrixXd parameter_rows() const;
-  /// Knowledge of the kind one always has, [p, p]: every error within 20 um or 60 urad, every number of a set-up within
-  /// a thousand times that.
+  /// Knowledge of the kind one always has, [p, p]: every error within 20 um or 60 urad (one with a state at the largest
+  /// value of its factor), every number of a set-up within a thousand times that.
   Eigen::MatrixXd weak_prior() const;
   /// Priors of the study, [rows, p].
   const Eigen::MatrixXd& known() const { return known_; }
 
   const Study& study() const { return study_; }
   const ErrorSet& errors() const { return errors_; }
+  /// States at which readings can be taken, and those at which errors will be used.
+  const PlannedStates& states() const { return states_; }
+  /// State of an estimated parameter, or kNoState.
+  std::size_t state_of(std::size_t parameter) const { return state_of_[parameter]; }
   /// Of instruments that may be read at any pose: stations times targets.
   std::size_t sight_count() const { return sights_.size(); }
   /// True if those instruments may be read wherever the axes go, so that poses beside a chosen one can be tried.
@@ -87,10 +107,16 @@ class PlanningModel {
   void add_given(std::size_t setup);
   void see(std::size_t setup, const InstrumentReadings& plan, std::vector<InstrumentReadings>& readings,
            Candidates& result) const;
+  void see_poses(const PoseList& poses, const std::vector<std::size_t>& sight,
+                 std::vector<InstrumentReadings>& readings, Candidates& result) const;
+  void find_states();
   InstrumentReadings sight_plan(const Sight& sight, const PoseList& poses, Candidates& result) const;
 
   Study study_;
   ErrorSet errors_;
+  PlannedStates states_;
+  std::vector<std::size_t> state_of_;   ///< [p]
+  std::vector<double> largest_factor_;  ///< [states of the machine]
   std::vector<std::shared_ptr<const Instrument>> devices_;
   std::vector<Sight> sights_;
   bool sights_stand_anywhere_ = true;
@@ -133,6 +159,23 @@ struct SetupChoice {
   bool possible = false;  ///< false: no time is left for readings, or too few to determine what they can see
 };
 
+/// The best conditions of a number, and what they would be worth.
+struct ConditionsOfANumber {
+  std::vector<std::size_t> conditions;  ///< increasing, indices into PlannedStates::conditions()
+  std::size_t readings = 0;
+  double with_prior = 0;   ///< mm, as PlanPoint; 0: no time is left for readings
+  std::size_t open = 0;    ///< directions that all conditions together see and no reading at these does
+  std::string open_words;  ///< the errors in them
+  bool chosen = false;     ///< by the plan
+};
+
+/// Uncertainty at states at which the errors will be used.
+struct UncertaintyAtStates {
+  std::vector<double> states;  ///< [states of the machine]
+  double time_s = 0;           ///< of the course
+  double uncertainty = 0;      ///< mm, root mean square of the volumetric standard uncertainty over the poses
+};
+
 /// A plan of readings and what it is worth.
 struct StudyPlan {
   ReadingPlan plan;
@@ -155,7 +198,19 @@ struct StudyPlan {
   std::optional<PlanPoint> random_poses;  ///< median of choices of as many candidates at random
   std::vector<SetupChoice> combinations;  ///< those that were compared; empty where setting up costs nothing
   NotIdentified not_identified;           ///< errors of the machine that no predicted uncertainty covers
+  /// Where errors have states: when readings are taken, and how much that is worth. Else there is one condition, and
+  /// the rest is empty.
+  PlannedStates states;
+  std::vector<ConditionsOfANumber> condition_curve;
+  ConditionsOfANumber conditions;                   ///< of the plan
+  std::vector<std::vector<double>> reading_states;  ///< [readings][states of the machine]
+  std::vector<UncertaintyAtStates> over_states;
+  SensorSelection sensors;
 };
+
+/// Whether readings at the conditions of a plan leave open what the errors do at the states at which they will be used.
+/// The uncertainties of such a plan are those with the weak prior.
+inline bool leaves_states_open(const StudyPlan& plan) { return plan.conditions.open > 0; }
 
 /// Chooses readings for a study with a [plan] table. Where setting an instrument up takes time, every combination of up
 /// to six set-ups is tried, and the best one is planned.
@@ -164,13 +219,30 @@ struct StudyPlan {
 /// @throws Stopped
 StudyPlan plan_study(const Study& study, const JobOptions& options = {});
 
-/// When each reading is finished, s from the start: setting up, moves of the slowest axis, settling, reading.
+/// When each reading is finished, s from the start or on the clock of the course: changes of states, setting up, moves
+/// of the slowest axis, settling, reading.
 /// @param readings  in their order
-std::vector<double> reading_times(const Study& study, const std::vector<CandidateReading>& readings);
+std::vector<double> reading_times(const Study& study, const std::vector<CandidateReading>& readings,
+                                  const PlannedStates& states = {});
 
 /// Root mean square of the predicted volumetric uncertainty, mm, of readings with the weak prior.
 double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidates::Rows& rows,
                               const Eigen::MatrixXd& predictions);
+
+/// Which measured states the planned readings and the errors found from them need: by the error that remains if one is
+/// not there. Errors with states are taken to be as large as `initial_errors` of the study has them, or as
+/// PlanningModel's weak prior does.
+/// @param readings        their rows, as PlanningModel::rows_of() makes them
+/// @param reading_states  [readings][states of the machine]
+SensorSelection planned_sensors(const PlanningModel& model, const PlanningCandidates& readings,
+                                const Eigen::MatrixXd& predictions,
+                                const std::vector<std::vector<double>>& reading_states);
+
+/// Errors that take part most in the directions that readings leave open, by their knowledge in PlanningModel's weak
+/// prior: "EXX[P1], EYX[P2]".
+/// @param rank  of the rows within the space
+std::string open_errors(const PlanningModel& model, const PlanningSpace& space, const PlanningCandidates::Rows& rows,
+                        std::size_t rank);
 
 /// Looks for the grids that one would really take: for every number of the curve, for the plan's and for larger ones.
 /// @throws Stopped

@@ -27,9 +27,14 @@ PythonReadings readings_of_plan(const PlanOutcome& outcome, const std::string& n
     if (setup.name != name) continue;
     InstrumentReadings readings;
     readings.inputs.resize(setup.device->inputs().size());
-    for (const CandidateReading& reading : outcome.plan.readings) {
-      if (reading.setup == s) readings.append(reading.pose, reading.item, reading.inputs);
+    std::vector<std::vector<double>> states;
+    for (std::size_t k = 0; k < outcome.plan.readings.size(); ++k) {
+      const CandidateReading& reading = outcome.plan.readings[k];
+      if (reading.setup != s) continue;
+      readings.append(reading.pose, reading.item, reading.inputs);
+      if (!outcome.plan.reading_states.empty()) states.push_back(outcome.plan.reading_states[k]);
     }
+    give_states(states, readings.poses);
     if (readings.count() == 0) readings.poses.axis.resize(study.machine.axes.size());
     return {{setup.name, setup.instrument, setup.device->as_planned(), study.machine}, std::move(readings)};
   }

@@ -127,12 +127,30 @@ std::vector<CarriedError> what_is_carried(const Making& making) {
   });
 }
 
+/// A lattice has the position of every axis that a state may follow from; a table over one axis has one value at each
+/// of its positions. Rotary axes are corrected by themselves, whatever others do.
+void refuse_states_of(const std::string& format, const Machine& machine, const ErrorSet& errors) {
+  if (table_format(format).kind != TableKind::lattice) {
+    refuse_states(machine, errors, "a table over the position of one axis");
+    return;
+  }
+  refuse_states(machine, errors, "a lattice", UsableStates::of_commands);
+  ErrorSet of_rotary;
+  for (const ErrorMotion& motion : errors.motions) {
+    if (machine.axes[motion.axis].kind == AxisKind::rotary) of_rotary.motions.push_back(motion);
+  }
+  for (const LocationError& location : errors.locations) {
+    if (machine.axes[location.axis].kind == AxisKind::rotary) of_rotary.locations.push_back(location);
+  }
+  refuse_states(machine, of_rotary, "the correction of a rotary axis by itself");
+}
+
 LossOverStates loss_over_states(const ControlTableRequest& request, const PoseList& poses,
                                 const CommandCorrection& correction) {
   LossOverStates loss;
   loss.record = request.over_file;
   for (const ErrorsAtTime& there : request.over) {
-    refuse_states(request.machine, there.errors, "a table of a control");
+    refuse_states_of(request.format, request.machine, there.errors);
     const SampleStatistics left = volumetric_error_with(request.machine, there.errors, poses, correction);
     loss.time_s.push_back(there.time_s);
     loss.rms.push_back(left.rms);
@@ -175,7 +193,7 @@ double LossOverStates::rms_of_all() const {
 }
 
 ControlTables make_control_tables(const ControlTableRequest& request) {
-  refuse_states(request.machine, request.errors, "a table of a control");
+  refuse_states_of(request.format, request.machine, request.errors);
   const TableFormat& format = table_format(request.format);
   const Machine& machine = request.machine;
   const ErrorSet& errors = request.errors;

@@ -66,8 +66,9 @@ std::string orientation_line(const char* name, const SampleStatistics& s) {
 }  // namespace
 
 ErrorsMap map_errors(const ErrorsMapRequest& request, const JobOptions& options) {
-  refuse_states(request.machine, request.errors.errors, "a map of errors");
-  if (request.minus) refuse_states(request.machine, request.minus->errors, "a map of errors");
+  refuse_states(request.machine, request.errors.errors, "a map of errors", UsableStates::of_commands);
+  if (request.minus)
+    refuse_states(request.machine, request.minus->errors, "a map of errors", UsableStates::of_commands);
   ErrorsMap map;
   map.machine = request.machine;
   map.stated = poses_of(request);

@@ -12,6 +12,7 @@
 #include "abbe/report/pages/path_data.h"
 #include "abbe/report/report.h"
 #include "abbe/report/version.h"
+#include "abbe/study/plan_states_text.h"
 #include "abbe/study/plan_text.h"
 
 namespace abbe {
@@ -258,7 +259,7 @@ std::vector<std::string> plan_notes(const StudyPlan& plan) {
 }  // namespace
 
 nlohmann::json plan_page_data(const Study& study, const StudyPlan& plan) {
-  const std::vector<double> times = reading_times(study, plan.readings);
+  const std::vector<double> times = reading_times(study, plan.readings, plan.states);
   nlohmann::json data;
   data["format"] = "abbe-report/1";
   data["title"] = "Planned measurement: " + study.name;
@@ -269,12 +270,17 @@ nlohmann::json plan_page_data(const Study& study, const StudyPlan& plan) {
   data["summary"]["verdict"] = fmt::format(
       "{} readings in {:.0f} min: predicted volumetric standard uncertainty{} {} um.", plan.readings.size(),
       plan.time / kMinute, plan.not_identified.errors.empty() ? "" : std::string(" of the ") + kIdentifiedErrorsOnly,
-      um_text(plan.uncertainty));
+      (leaves_states_open(plan) ? "with prior knowledge " : "") + um_text(plan.uncertainty));
   data["warnings"] = nlohmann::json::array();
   if (study.planning->time > 0 && plan.time > study.planning->time) {
     data["warnings"].push_back(
         {{"level", "warning"},
          {"text", fmt::format("This takes longer than the {:.0f} min allowed.", study.planning->time / kMinute)}});
+  }
+  if (leaves_states_open(plan)) {
+    data["warnings"].push_back(
+        {{"level", "warning"},
+         {"text", fmt::format("What the errors do where they are used is {}.", open_states_words(plan))}});
   }
   data["plan"]["curve"] = curve_json(plan);
   if (plan.enough < plan.curve.size()) data["plan"]["curve"]["enough"] = plan.enough;
@@ -284,6 +290,7 @@ nlohmann::json plan_page_data(const Study& study, const StudyPlan& plan) {
   data["path"] = poses_json(study, plan, times);
   data["machine"] = nlohmann::json(report_machine(study.machine));
   data["tables"] = {comparison_table(plan), curve_table(plan)};
+  for (nlohmann::json& table : planned_states_tables(plan)) data["tables"].push_back(std::move(table));
   if (!plan.combinations.empty()) data["tables"].push_back(combinations_table(plan));
   data["assumptions"] = plan_notes(plan);
   return data;

@@ -9,6 +9,7 @@
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/drawings/svg_plot.h"
+#include "abbe/study/plan_states_text.h"
 
 namespace abbe {
 namespace {
@@ -119,8 +120,12 @@ std::string plan_csv(const Study& study, const StudyPlan& result) {
   for (const Axis& axis : study.machine.axes) text += fmt::format("{}_{},", axis.name, position_suffix(axis));
   if (columns.setup) text += "setup,";
   if (columns.station) text += "station,";
-  text += columns.target + "\n";
-  for (const CandidateReading& reading : result.readings) {
+  const bool timed = result.states.has_course();
+  const std::vector<double> times =
+      timed ? reading_times(study, result.readings, result.states) : std::vector<double>();
+  text += columns.target + (timed ? ",time_s" : "") + state_heads_of_plan(study, result) + "\n";
+  for (std::size_t k = 0; k < result.readings.size(); ++k) {
+    const CandidateReading& reading = result.readings[k];
     for (std::size_t i = 0; i < reading.pose.size(); ++i)
       text += fmt::format("{:.6f},", reading.pose[i] / position_unit(study.machine.axes[i]));
     const Setup& setup = study.setups[reading.setup];
@@ -128,7 +133,8 @@ std::string plan_csv(const Study& study, const StudyPlan& result) {
     const std::vector<std::string> stations = device.station_names();
     if (columns.setup) text += csv_field(setup.name) + ",";
     if (columns.station) text += (stations.empty() ? "-" : csv_field(stations[device.station_of(reading.item)])) + ",";
-    text += csv_field(device.target_names()[device.target_of(reading.item)]) + "\n";
+    text += csv_field(device.target_names()[device.target_of(reading.item)]);
+    text += (timed ? fmt::format(",{:.3f}", times[k]) : "") + states_of_planned_reading(result, k) + "\n";
   }
   return text;
 }
@@ -178,6 +184,7 @@ nlohmann::ordered_json plan_json(const Study& study, const StudyPlan& result) {
     }
     json["combinations"].push_back(entry);
   }
+  add_planned_states(study, result, json);
   if (result.plan.status != PlanningStatus::done) return json;
   json["readings"] = result.readings.size();
   if (has_other_instruments(study)) {
@@ -188,7 +195,7 @@ nlohmann::ordered_json plan_json(const Study& study, const StudyPlan& result) {
     }
   }
   json["time_s"] = result.time;
-  json["predicted_volumetric_uncertainty_um"] = 1e3 * result.uncertainty;
+  if (!leaves_states_open(result)) json["predicted_volumetric_uncertainty_um"] = 1e3 * result.uncertainty;
   if (!result.not_identified.errors.empty()) {
     json["uncertainty_covers"] = kIdentifiedErrorsOnly;
     json["not_identified"] = result.not_identified.names;
@@ -242,7 +249,7 @@ std::string study_plan_text(const Study& study, const StudyPlan& result) {
   text += fmt::format("{} parameters, of which the candidates see {} directions\n", result.parameters, result.seen);
   if (result.plan.status != PlanningStatus::done) {
     text += fmt::format("no plan: {}\n", status_text(result.plan.status));
-    return text;
+    return text + planned_states_text(study, result);
   }
   text += combinations_text(result);
   if (result.unseen_part > 1e-6)
@@ -253,11 +260,15 @@ std::string study_plan_text(const Study& study, const StudyPlan& result) {
   if (has_other_instruments(study)) text += setups_text(study, result);
   if (study.planning->time > 0 && result.time > study.planning->time)
     text += fmt::format("warning: this is more than the {:.0f} min allowed\n", study.planning->time / 60);
-  text += fmt::format("predicted volumetric standard uncertainty (root mean square): {:.3f} um\n",
-                      1e3 * result.uncertainty);
+  text += leaves_states_open(result)
+              ? fmt::format("predicted volumetric standard uncertainty: {}; with prior knowledge {:.3f} um\n",
+                            open_states_words(result), 1e3 * result.with_prior)
+              : fmt::format("predicted volumetric standard uncertainty (root mean square): {:.3f} um\n",
+                            1e3 * result.uncertainty);
   if (!result.not_identified.errors.empty())
     text += fmt::format("  of the {}: not in the model and not covered are {}\n", kIdentifiedErrorsOnly,
                         not_identified_names(study, result.not_identified));
+  text += planned_states_text(study, result);
   text += fmt::format("\nhow many are enough: {}\n", result.enough_words);
   const bool grids = result.grids_tried > 0;
   text += fmt::format("                  chosen{}\n", grids ? "    best grid" : "");

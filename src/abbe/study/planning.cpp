@@ -7,28 +7,29 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <set>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/study/campaign.h"
 #include "abbe/study/model.h"
+#include "abbe/study/planning_conditions.h"
+#include "abbe/study/planning_schedule.h"
+#include "abbe/study/planning_setting.h"
 #include "abbe/study/random_poses.h"
 
 namespace abbe {
 namespace {
 
-constexpr std::size_t kPredictionPoses = 200;
 constexpr double kShares[] = {0.3, 0.4, 0.5, 0.65, 0.8, 1, 1.25, 1.6, 2};
 constexpr int kTimeRounds = 6;
+constexpr int kCourseRounds = 20;
 constexpr std::size_t kRandomDraws = 9;
 constexpr int kRefinements = 4;
 constexpr std::size_t kPosesAround = 6;
-constexpr double kWholeTurn = 2 * std::numbers::pi * 0.99;
-constexpr double kAtAnEnd = 0.4;
 constexpr double kLeastCost_s = 1e-3;
 constexpr std::size_t kMostTogether = 6;
+constexpr std::size_t kPosesToCompare = 600;  // conditions by
 
 /// Takes the share of the work that is done, 0 to 1, and throws Stopped where that was asked for.
 using ShareCallback = std::function<void(double)>;
@@ -39,36 +40,14 @@ enum class PlanningDepth {
   whole    ///< refined and compared with other choices
 };
 
-double move_time(const PlanningStudy& plan, const std::vector<double>& from, const std::vector<double>& to) {
-  double longest = 0;
-  for (std::size_t i = 0; i < from.size(); ++i) longest = std::max(longest, std::abs(to[i] - from[i]) / plan.speed[i]);
-  return longest;
-}
-
-/// Random poses over the ranges. The best places of polynomials are the ends and the middle of a range, which random
-/// positions of five axes never meet together: in every second pose each axis with two ends stands at one of these.
-PoseList candidate_poses(const Machine& machine, const PlanningStudy& plan, std::uint64_t seed) {
-  PoseList poses = random_plan(machine, plan.axes, static_cast<std::size_t>(plan.candidates), seed);
-  for (std::size_t k = 1; k < poses.count(); k += 2) {
-    RandomStream random(seed + 1, k);
-    for (std::size_t i = 0; i < plan.axes.size(); ++i) {
-      const AxisRange& range = plan.axes[i];
-      const double share = random.uniform();
-      const bool turn = machine.axes[i].kind == AxisKind::rotary && range.to - range.from > kWholeTurn;
-      if (turn || range.step > 0) continue;
-      poses.axis[i][k] = share < kAtAnEnd ? range.from : share < 2 * kAtAnEnd ? range.to : (range.from + range.to) / 2;
-    }
-  }
-  return poses;
-}
-
 /// The poses of readings, and beside each some in which one or two axes stand elsewhere (coordinate exchange; Meyer and
 /// Nachtsheim, Technometrics 37 (1995) 60): at an end, in the middle, or anywhere.
-PoseList poses_around(const PlanningStudy& plan, const std::vector<CandidateReading>& readings, std::uint64_t seed) {
+PoseList poses_around(const PlanningStudy& plan, const std::vector<CandidateReading>& readings, std::size_t condition,
+                      std::uint64_t seed) {
   PoseList poses;
   std::set<std::vector<double>> known;
   for (const CandidateReading& reading : readings)
-    if (known.insert(reading.pose).second) poses.append(reading.pose);
+    if (reading.condition == condition && known.insert(reading.pose).second) poses.append(reading.pose);
   const std::size_t given = poses.count();
   for (std::size_t k = 0; k < given; ++k)
     for (std::size_t n = 0; n < kPosesAround; ++n) {
@@ -87,62 +66,6 @@ PoseList poses_around(const PlanningStudy& plan, const std::vector<CandidateRead
       if (known.insert(pose).second) poses.append(pose);
     }
   return poses;
-}
-
-bool sees_points_only(const Study& study) {
-  return std::all_of(study.setups.begin(), study.setups.end(),
-                     [](const Setup& setup) { return setup.device->measures_points(); });
-}
-
-/// The errors to be identified, of zero, over the ranges that an identification from all candidates would state.
-/// @throws InputError if an axis with error motions stands still in all of them
-ErrorSet measurable_errors(const Study& study, const PlanningModel::Candidates& candidates) {
-  Campaign campaign;
-  for (const InstrumentReadings& readings : candidates.of_setup) campaign.setups.emplace_back().readings = readings;
-  StudyModel model;
-  ErrorSet errors = model_errors(study, campaign, model);
-  if (!model.impossible.empty()) {
-    throw InputError({.field = "plan"}, model.impossible, "plans of the set-ups in which it moves");
-  }
-  errors.set_parameters(std::vector<double>(errors.parameter_count(), 0.0));
-  return errors;
-}
-
-/// Poses in an order of short travel; all readings of one pose together.
-std::vector<CandidateReading> by_short_travel(const Machine& machine, const std::vector<CandidateReading>& readings) {
-  std::map<std::vector<double>, std::vector<CandidateReading>> at;
-  PoseList poses;
-  for (const CandidateReading& reading : readings) {
-    std::vector<CandidateReading>& here = at[reading.pose];
-    if (here.empty()) poses.append(reading.pose);
-    here.push_back(reading);
-  }
-  const PoseList ordered = order_by_travel(machine, poses);
-  std::vector<CandidateReading> result;
-  for (std::size_t k = 0; k < ordered.count(); ++k)
-    for (const CandidateReading& reading : at[ordered.pose(k)]) result.push_back(reading);
-  return result;
-}
-
-/// Same readings in the order in which they are to be taken. Trackers stand there all the time; other instruments are
-/// used one after the other.
-std::vector<CandidateReading> in_order(const Study& study, const std::vector<CandidateReading>& readings) {
-  if (sees_points_only(study)) return by_short_travel(study.machine, readings);
-  std::vector<CandidateReading> result;
-  for (std::size_t s = 0; s < study.setups.size(); ++s) {
-    std::vector<CandidateReading> own;
-    for (const CandidateReading& reading : readings) {
-      if (reading.setup == s) own.push_back(reading);
-    }
-    if (own.empty()) continue;
-    own = by_short_travel(study.machine, own);
-    result.insert(result.end(), own.begin(), own.end());
-  }
-  return result;
-}
-
-double total_time(const Study& study, const std::vector<CandidateReading>& readings) {
-  return readings.empty() ? 0 : reading_times(study, readings).back();
 }
 
 double root_mean_square(const PlanValue& value, const Eigen::MatrixXd& predictions) {
@@ -224,38 +147,25 @@ void add_costs(const Study& study, PlanningModel::Candidates& candidates) {
   }
 }
 
-StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ShareCallback& progress,
-                          const std::stop_token& stop) {
+StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ConditionsOfANumber& at,
+                          const ShareCallback& progress, const std::stop_token& stop) {
   progress(0);
-  auto whole_model = std::make_unique<const PlanningModel>(study);
   const PlanningStudy& plan = *study.planning;
-  const PoseList poses =
-      plan.grid ? grid_plan(study.machine, plan.axes) : candidate_poses(study.machine, plan, study.seed);
-  PlanningModel::Candidates candidates = whole_model->readings_at(poses);
-  std::vector<AxisRange> predicted = plan.axes;
-  // Trackers are planned for the ranges of the plan, which they can all see. What other instruments see decides where
-  // errors can be known at all.
-  if (!sees_points_only(study) && !candidates.readings.empty()) {
-    const ErrorSet errors = measurable_errors(study, candidates);
-    whole_model = std::make_unique<const PlanningModel>(study, &errors);
-    candidates = whole_model->readings_at(poses);
-    predicted = unseen_ranges(study.machine, {&errors});
-  }
-  const PlanningModel& model = *whole_model;
+  const std::vector<std::size_t>& conditions = at.conditions;
+  PlanningSetting setting = planning_setting(study, conditions, static_cast<std::size_t>(plan.candidates));
+  const PlanningModel& model = *setting.model;
+  PlanningModel::Candidates& candidates = setting.candidates;
+  const Eigen::MatrixXd& predictions = setting.predictions;
   StudyPlan result;
+  result.states = model.states();
+  result.conditions = at;
   result.candidates = candidates.readings.size();
   result.hidden = candidates.hidden;
   result.forbidden = candidates.forbidden;
-  if (result.candidates == 0) {
-    throw InputError({.field = "plan"}, "no candidate has a line of sight outside the forbidden boxes",
-                     "other stations, reflectors, ranges or boxes");
-  }
   add_costs(study, candidates);
   auto space = std::make_unique<const PlanningSpace>(candidates.rows, model.known());
   result.parameters = space->parameter_count();
   result.seen = space->dimension();
-  const Eigen::MatrixXd predictions =
-      model.prediction_rows(random_plan(study.machine, predicted, kPredictionPoses, study.seed * 7919 + 1));
   const Eigen::VectorXd unseen = space->unseen_part(predictions);
   // Rows that are zero but for rounding have no direction.
   const Eigen::VectorXd sizes = space->functionals(predictions).rowwise().norm();
@@ -280,24 +190,31 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ShareCa
     result.plan = chosen;
     result.readings.clear();
     for (const std::size_t i : chosen.chosen) result.readings.push_back(from.readings[i]);
-    result.readings = in_order(study, result.readings);
-    result.time = total_time(study, result.readings);
+    result.readings = scheduled_readings(study, result.states, result.readings);
+    result.time = measuring_time(study, result.states, result.readings);
   };
   const bool has_costs = !candidates.rows.cost_s.empty();
   double set_up = 0;
   for (const Setup& setup : study.setups) set_up += plan.set_up_of(setup.name);
-  double budget = plan.time - set_up;
+  const double fixed = set_up + model.states().change_time(conditions);
+  double budget = plan.time - fixed;
+  ConditionGroups groups(model);
   if (has_costs) count = plan.readings > 0 ? static_cast<std::size_t>(plan.readings) : result.candidates;
-  for (int round = 0; round < kTimeRounds; ++round) {
+  for (int round = 0; round < (model.states().has_course() ? kCourseRounds : kTimeRounds); ++round) {
     options.count = std::min(count, result.candidates);
     if (has_costs) options.time_s = budget;
+    groups.limit(candidates, options);
     take(plan_readings(*space, options), candidates);
-    if (result.plan.status != PlanningStatus::done || plan.time <= 0 || result.time <= plan.time) break;
+    if (result.plan.status != PlanningStatus::done) break;
+    const bool too_long = plan.time > 0 && result.time > plan.time;
+    if (!groups.shrink(model, result.readings) && !too_long) break;
+    if (!too_long) continue;
     if (has_costs) {
-      budget *= 0.99 * (plan.time - set_up) / std::max(result.time - set_up, kLeastCost_s);
+      budget *= 0.99 * (plan.time - fixed) / std::max(result.time - fixed, kLeastCost_s);
     } else {
-      count =
-          static_cast<std::size_t>(std::max(1.0, 0.99 * static_cast<double>(options.count) * plan.time / result.time));
+      const double changes = fixed - set_up;
+      count = static_cast<std::size_t>(
+          std::max(1.0, 0.99 * static_cast<double>(options.count) * (plan.time - changes) / (result.time - changes)));
     }
   }
   if (result.plan.status != PlanningStatus::done) return result;
@@ -322,8 +239,13 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ShareCa
       std::none_of(plan.axes.begin(), plan.axes.end(), [](const AxisRange& range) { return range.step > 0; });
   options.progress = [&stop](double) { stop_if_asked(stop); };
   for (int round = 0; round < kRefinements && may_stand_anywhere; ++round) {
-    PlanningModel::Candidates around =
-        model.readings_at(poses_around(plan, result.readings, study.seed * 31 + static_cast<std::uint64_t>(round)));
+    std::vector<PosesAt> tried;
+    for (const std::size_t condition : conditions) {
+      const std::uint64_t seed = study.seed * 31 + static_cast<std::uint64_t>(round) + kSeedOfCondition * condition;
+      tried.push_back({poses_around(plan, result.readings, condition, seed), condition});
+      if (tried.back().poses.count() == 0) tried.pop_back();
+    }
+    PlanningModel::Candidates around = model.readings_at(tried);
     add_costs(study, around);
     auto space_around = std::make_unique<const PlanningSpace>(around.rows, model.known());
     if (space_around->dimension() != space->dimension()) break;
@@ -331,12 +253,13 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ShareCa
     for (std::size_t i = 0; i < around.readings.size(); ++i) places[around.readings[i]] = i;
     PlanningOptions refined = options;
     refined.count = result.plan.chosen.size();
+    groups.limit(around, refined);
     for (const CandidateReading& reading : result.readings) refined.start.push_back(places.at(reading));
     const ReadingPlan better = plan_readings(*space_around, refined);
     if (better.status != PlanningStatus::done) break;
     const StudyPlan before = result;
     take(better, around);
-    if (plan.time > 0 && result.time > plan.time) {
+    if ((plan.time > 0 && result.time > plan.time) || !ConditionGroups::fit(model, result.readings)) {
       result = before;
       break;
     }
@@ -348,7 +271,15 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ShareCa
   result.uncertainty = root_mean_square(value_of(*space, result.plan.chosen, predictions), predictions);
   result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
 
+  if (!ConditionGroups::fit(model, result.readings)) {
+    throw InputError({.field = "plan.course"}, "the readings do not end within their parts of the course",
+                     "fewer readings, or longer parts");
+  }
+  judge_over_states(model, *space, predictions, result);
+  if (result.plan.status != PlanningStatus::done) return result;
+
   PlanningOptions curve_options = options;
+  groups.limit(candidates, curve_options);
   curve_options.most_passes = 2;
   curve_options.time_s = std::numeric_limits<double>::infinity();
   std::vector<std::size_t> counts;
@@ -366,7 +297,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ShareCa
   }
   say_what_is_enough(plan, result);
   progress(0.85);
-  if (model.sights_stand_anywhere() && !model.has_given_readings()) {
+  if (model.sights_stand_anywhere() && !model.has_given_readings() && !model.states().any()) {
     compare_with_grids(model, *space, predictions, result, stop);
   }
   result.not_identified = find_not_in_model(study, model.errors());
@@ -390,8 +321,8 @@ Study with_setups(const Study& study, std::size_t subset) {
 
 /// Which instruments are worth setting up: every combination of them is planned, and the one counts whose predicted
 /// uncertainty, with the weak prior for what it does not see, is smallest.
-std::vector<SetupChoice> try_combinations(const Study& study, const ShareCallback& progress,
-                                          const std::stop_token& stop) {
+std::vector<SetupChoice> try_combinations(const Study& study, const ConditionsOfANumber& conditions,
+                                          const ShareCallback& progress, const std::stop_token& stop) {
   std::vector<SetupChoice> choices;
   const std::size_t combinations = (std::size_t{1} << study.setups.size()) - 1;
   for (std::size_t subset = 1; subset <= combinations; ++subset) {
@@ -404,7 +335,7 @@ std::vector<SetupChoice> try_combinations(const Study& study, const ShareCallbac
     }
     if (set_up < part.planning->time) {
       const auto within = [&stop](double) { stop_if_asked(stop); };
-      const StudyPlan plan = plan_all_setups(part, PlanningDepth::choice, within, stop);
+      const StudyPlan plan = plan_all_setups(part, PlanningDepth::choice, conditions, within, stop);
       choice.possible = plan.plan.status == PlanningStatus::done;
       choice.readings = plan.readings.size();
       choice.time = plan.time;
@@ -416,25 +347,27 @@ std::vector<SetupChoice> try_combinations(const Study& study, const ShareCallbac
   return choices;
 }
 
-}  // namespace
-
-std::vector<double> reading_times(const Study& study, const std::vector<CandidateReading>& readings) {
-  const PlanningStudy& plan = *study.planning;
-  std::vector<double> times;
-  times.reserve(readings.size());
-  double time = 0;
-  std::set<std::size_t> used;
-  for (std::size_t k = 0; k < readings.size(); ++k) {
-    const std::string& setup = study.setups[readings[k].setup].name;
-    if (used.insert(readings[k].setup).second) time += plan.set_up_of(setup);
-    time += plan.reading_of(setup);
-    if (k == 0 || readings[k].pose != readings[k - 1].pose) {
-      time += plan.settle_of(setup) + (k > 0 ? move_time(plan, readings[k - 1].pose, readings[k].pose) : 0);
-    }
-    times.push_back(time);
-  }
-  return times;
+/// Whether errors with states are to be identified, or the plan has values for them.
+bool names_states(const Study& study) {
+  if (!study.identification) return false;
+  const IdentificationPlan& plan = *study.identification;
+  const auto has_state = [](const auto& one) { return one.state != kNoState; };
+  return std::any_of(plan.motions.begin(), plan.motions.end(), has_state) ||
+         std::any_of(plan.locations.begin(), plan.locations.end(), has_state) || !study.planning->states.empty() ||
+         study.planning->course;
 }
+
+/// At which conditions the readings are to be taken; where errors have states, by trying.
+std::vector<ConditionsOfANumber> conditions_to_take(const Study& study, const std::stop_token& stop) {
+  const std::size_t count = PlanningModel(study).states().conditions().size();
+  std::vector<std::size_t> all(count);
+  for (std::size_t c = 0; c < count; ++c) all[c] = c;
+  const auto poses = static_cast<std::size_t>(study.planning->candidates);
+  const PlanningSetting setting = planning_setting(study, all, std::min(poses, kPosesToCompare));
+  return choose_conditions({*setting.model, setting.candidates, setting.predictions}, stop);
+}
+
+}  // namespace
 
 StudyPlan plan_study(const Study& study, const JobOptions& options) {
   const ShareCallback progress = [report = stoppable_progress(options)](double share) {
@@ -446,10 +379,23 @@ StudyPlan plan_study(const Study& study, const JobOptions& options) {
   const bool set_up_costs = std::any_of(study.planning->setups.begin(), study.planning->setups.end(),
                                         [](const PlannedSetup& setup) { return setup.set_up > 0; });
   const std::size_t setups = study.setups.size();
-  if (!set_up_costs || study.planning->time <= 0 || setups < 2 || setups > kMostTogether) {
-    return plan_all_setups(study, PlanningDepth::whole, progress, options.stop);
+  std::vector<ConditionsOfANumber> curve;
+  ConditionsOfANumber conditions;
+  conditions.conditions = {0};
+  if (names_states(study)) {
+    progress(0);
+    curve = conditions_to_take(study, options.stop);
+    for (const ConditionsOfANumber& one : curve) {
+      if (one.chosen || &one == &curve.back()) conditions = one;
+      if (one.chosen) break;
+    }
   }
-  std::vector<SetupChoice> choices = try_combinations(study, progress, options.stop);
+  if (!set_up_costs || study.planning->time <= 0 || setups < 2 || setups > kMostTogether) {
+    StudyPlan plan = plan_all_setups(study, PlanningDepth::whole, conditions, progress, options.stop);
+    plan.condition_curve = std::move(curve);
+    return plan;
+  }
+  std::vector<SetupChoice> choices = try_combinations(study, conditions, progress, options.stop);
   const auto worse = [](const SetupChoice& a, const SetupChoice& b) {
     return a.possible != b.possible ? b.possible : a.with_prior > b.with_prior;
   };
@@ -459,7 +405,9 @@ StudyPlan plan_study(const Study& study, const JobOptions& options) {
     if ((best.subset >> s & 1) != 0) kept.push_back(s);
   }
   const auto rest = [&](double share) { progress(0.5 + 0.5 * share); };
-  StudyPlan plan = plan_all_setups(with_setups(study, best.subset), PlanningDepth::whole, rest, options.stop);
+  StudyPlan plan =
+      plan_all_setups(with_setups(study, best.subset), PlanningDepth::whole, conditions, rest, options.stop);
+  plan.condition_curve = std::move(curve);
   for (CandidateReading& reading : plan.readings) reading.setup = kept[reading.setup];
   plan.combinations = std::move(choices);
   return plan;

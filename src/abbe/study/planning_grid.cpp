@@ -54,8 +54,7 @@ class GridSearch {
         predictions_(predictions),
         result_(result),
         stop_(stop),
-        ranges_(model.study().planning->axes),
-        prior_(model.weak_prior() + model.known().transpose() * model.known()) {
+        ranges_(model.study().planning->axes) {
     const double all = static_cast<double>(result.candidates + result.hidden);
     visible_ = all > 0 ? static_cast<double>(result.candidates) / all : 1;
     const std::size_t poses = static_cast<std::size_t>(all) / model.sight_count() + result.forbidden;
@@ -122,27 +121,8 @@ class GridSearch {
     if (value.determined)
       point.value.uncertainty = std::sqrt(value.variance / (static_cast<double>(predictions_.rows()) / 3));
     point.open = space_.dimension() - value.rank;
-    if (point.open > 0) point.open_words = open_words(readings.rows.rows, value.rank);
+    if (point.open > 0) point.open_words = open_errors(model_, space_, readings.rows.rows, value.rank);
     return point;
-  }
-
-  /// Errors that take part most in the directions that a grid leaves open.
-  std::string open_words(const PlanningCandidates::Rows& rows, std::size_t rank) const {
-    const Index v = static_cast<Index>(space_.dimension()), open = v - static_cast<Index>(rank);
-    const RightSingular svd = right_singular(Eigen::MatrixXd(rows * space_.estimates_from_seen()));
-    const Eigen::VectorXd weights = prior_.diagonal().cwiseSqrt();
-    const Eigen::MatrixXd directions =
-        weights.asDiagonal() * space_.estimates_from_seen() * svd.vectors.rightCols(open);
-    const Eigen::VectorXd share = directions.colwise().normalized().rowwise().squaredNorm();
-    std::vector<std::size_t> order(static_cast<std::size_t>(share.size()));
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return share[static_cast<Index>(a)] > share[static_cast<Index>(b)];
-    });
-    std::string text;
-    for (std::size_t k = 0; k < std::min(kMostNamed, order.size()); ++k)
-      text += (k > 0 ? ", " : "") + model_.parameters()[order[k]].name;
-    return text;
   }
 
   std::string counts_text(const Counts& counts) const {
@@ -288,7 +268,6 @@ class GridSearch {
   StudyPlan& result_;
   std::stop_token stop_;
   const std::vector<AxisRange>& ranges_;
-  Eigen::MatrixXd prior_;
   double visible_ = 1;
 };
 
@@ -304,6 +283,25 @@ double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidat
   const Cholesky factor(scaled);
   const Eigen::MatrixXd half = factor.half_solve(scale.asDiagonal() * predictions.transpose());
   return std::sqrt(half.squaredNorm() / (static_cast<double>(predictions.rows()) / 3));
+}
+
+std::string open_errors(const PlanningModel& model, const PlanningSpace& space, const PlanningCandidates::Rows& rows,
+                        std::size_t rank) {
+  const Index v = static_cast<Index>(space.dimension()), open = v - static_cast<Index>(rank);
+  const RightSingular svd = right_singular(Eigen::MatrixXd(rows * space.estimates_from_seen()));
+  const Eigen::MatrixXd prior = model.weak_prior() + model.known().transpose() * model.known();
+  const Eigen::VectorXd weights = prior.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd directions = weights.asDiagonal() * space.estimates_from_seen() * svd.vectors.rightCols(open);
+  const Eigen::VectorXd share = directions.colwise().normalized().rowwise().squaredNorm();
+  std::vector<std::size_t> order(static_cast<std::size_t>(share.size()));
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return share[static_cast<Index>(a)] > share[static_cast<Index>(b)];
+  });
+  std::string text;
+  for (std::size_t k = 0; k < std::min(kMostNamed, order.size()); ++k)
+    text += (k > 0 ? ", " : "") + model.parameters()[order[k]].name;
+  return text;
 }
 
 void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/study/study_parts.h"
@@ -24,34 +26,42 @@ namespace {
 
 using Eigen::Index;
 
-/// @throws InputError for errors with states: a plan of readings does not say at which states they will be taken
+/// Poses at which the largest factors of states are looked for.
+constexpr std::size_t kFactorPoses = 50;
+
 ErrorSet planned_errors(const Study& study) {
   ErrorSet errors;
-  const auto refuse = [&](std::size_t state) {
-    if (state == kNoState) return;
-    throw InputError({.field = "identify.motion.state"},
-                     fmt::format("planning of readings does not know at which values of {} they will be taken",
-                                 study.machine.states[state].name),
-                     "a study without states");
-  };
   for (const IdentifiedMotion& identified : study.identification->motions) {
-    refuse(identified.state);
     ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}};
     motion.coefficients.assign(motion.basis.size(), 0.0);
+    motion.state = identified.state;
     errors.motions.push_back(motion);
   }
   for (const IdentifiedLocation& location : study.identification->locations) {
-    refuse(location.state);
-    errors.locations.push_back({location.axis, location.component, 0, 0});
+    LocationError& planned = errors.locations.emplace_back();
+    planned.axis = location.axis;
+    planned.component = location.component;
+    planned.state = location.state;
   }
   for (const std::size_t axis : study.identification->reversals) errors.reversals.push_back({axis, 0, 0});
   return errors;
+}
+
+/// [parameters] state of each, or kNoState.
+std::vector<std::size_t> states_of_parameters(const ErrorSet& errors) {
+  std::vector<std::size_t> states;
+  for (const ErrorMotion& motion : errors.motions)
+    states.insert(states.end(), motion.coefficients.size(), motion.state);
+  for (const LocationError& location : errors.locations) states.push_back(location.state);
+  states.resize(errors.parameter_count(), kNoState);
+  return states;
 }
 
 /// No readings at all, which still have a place in the problem.
 InstrumentReadings empty_readings(const Machine& machine, const Instrument& device) {
   InstrumentReadings readings;
   readings.poses.axis.resize(machine.axes.size());
+  readings.poses.state.resize(machine.states.size());
   readings.inputs.resize(device.inputs().size());
   readings.measured.resize(device.components().size());
   return readings;
@@ -86,6 +96,7 @@ PlanningModel::PlanningModel(const Study& study, const ErrorSet* errors) : study
     throw InputError({.field = "identify"}, "it is not said what is to be identified", "a table [identify]");
   if (study.setups.empty()) throw InputError({.field = "setup"}, "there is no instrument", "[[setup]]");
   errors_ = errors != nullptr ? *errors : planned_errors(study);
+  states_ = PlannedStates(study, errors_);
   check_setups();
   for (std::size_t s = 0; s < study.setups.size(); ++s) {
     const Instrument& device = *devices_.emplace_back(study.setups[s].device->as_planned());
@@ -104,6 +115,7 @@ PlanningModel::PlanningModel(const Study& study, const ErrorSet* errors) : study
   for (const auto& device : devices_) none.push_back(empty_readings(study.machine, *device));
   const Problem empty = problem(none);
   parameters_ = estimated_parameters(empty);
+  find_states();
   Problem with_priors = empty;
   for (const ParameterPrior& prior : study.identification->priors)
     for (const EstimatedParameter& parameter : parameters_)
@@ -113,6 +125,24 @@ PlanningModel::PlanningModel(const Study& study, const ErrorSet* errors) : study
     for (const KnownUnknown& known : known_unknowns_of(*devices_[s]))
       with_priors.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
   known_ = prior_rows(with_priors);
+}
+
+void PlanningModel::find_states() {
+  const std::vector<std::size_t> of_machine = states_of_parameters(errors_);
+  for (const EstimatedParameter& parameter : parameters_) {
+    state_of_.push_back(parameter.id.is_machine() ? of_machine[parameter.id.index] : kNoState);
+  }
+  largest_factor_.assign(study_.machine.states.size(), 0);
+  if (!has_states(errors_)) return;
+  const PoseList poses = random_plan(study_.machine, study_.planning->axes, kFactorPoses, study_.seed);
+  for (const std::vector<double>& given : states_.used_at()) {
+    for (std::size_t k = 0; k < poses.count(); ++k) {
+      const std::vector<double> factors = state_factors(study_.machine, poses.pose(k), given);
+      for (std::size_t j = 0; j < factors.size(); ++j) {
+        if (std::isfinite(factors[j])) largest_factor_[j] = std::max(largest_factor_[j], std::abs(factors[j]));
+      }
+    }
+  }
 }
 
 void PlanningModel::check_setups() const {
@@ -212,13 +242,10 @@ void PlanningModel::see(std::size_t setup, const InstrumentReadings& plan, std::
   readings[setup].append(seen.readings);
 }
 
-PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
-                                                     const std::vector<std::size_t>& sight) const {
-  Candidates result;
+void PlanningModel::see_poses(const PoseList& poses, const std::vector<std::size_t>& sight,
+                              std::vector<InstrumentReadings>& readings, Candidates& result) const {
   const std::vector<bool> out = forbidden(poses);
-  result.forbidden = static_cast<std::size_t>(std::count(out.begin(), out.end(), true));
-  std::vector<InstrumentReadings> readings;
-  for (const auto& device : devices_) readings.push_back(empty_readings(study_.machine, *device));
+  result.forbidden += static_cast<std::size_t>(std::count(out.begin(), out.end(), true));
   for (std::size_t i = 0; i < sights_.size(); ++i) {
     PoseList own;
     own.axis.resize(poses.axis.size());
@@ -238,15 +265,62 @@ PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
     result.forbidden += plan.count() - allowed.size();
     see(setup, plan.subset(allowed), readings, result);
   }
+}
+
+PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
+                                                     const std::vector<std::size_t>& sight) const {
+  return readings_at({{poses, 0}}, sight);
+}
+
+PlanningModel::Candidates PlanningModel::readings_at(const std::vector<PosesAt>& tried,
+                                                     const std::vector<std::size_t>& sight) const {
+  Candidates result;
+  std::vector<InstrumentReadings> readings;
+  for (const auto& device : devices_) readings.push_back(empty_readings(study_.machine, *device));
+  std::vector<std::vector<std::size_t>> condition(devices_.size());
+  for (const PosesAt& at : tried) {
+    see_poses(at.poses, sight, readings, result);
+    for (std::size_t s = 0; s < readings.size(); ++s) condition[s].resize(readings[s].count(), at.condition);
+  }
+  for (std::size_t s = 0; s < readings.size(); ++s) {
+    std::vector<std::vector<double>> states;
+    for (const std::size_t one : condition[s]) states.push_back(states_.conditions()[one].states);
+    give_states(states, readings[s].poses);
+  }
   result.rows = candidate_rows(problem(readings));
   for (std::size_t s = 0; s < readings.size(); ++s)
     for (std::size_t k = 0; k < readings[s].count(); ++k) {
       std::vector<double> inputs;
       for (const std::vector<double>& column : readings[s].inputs) inputs.push_back(column[k]);
-      result.readings.push_back({readings[s].poses.pose(k), s, readings[s].item[k], std::move(inputs)});
+      result.readings.push_back(
+          {readings[s].poses.pose(k), s, readings[s].item[k], std::move(inputs), condition[s][k]});
     }
   result.of_setup = std::move(readings);
   return result;
+}
+
+PlanningCandidates PlanningModel::rows_of(const std::vector<CandidateReading>& readings,
+                                          const std::vector<std::vector<double>>& states) const {
+  std::vector<InstrumentReadings> seen;
+  Candidates counted;
+  for (std::size_t s = 0; s < devices_.size(); ++s) {
+    seen.push_back(empty_readings(study_.machine, *devices_[s]));
+    std::vector<std::vector<double>> own;
+    // One item at a time: see() takes all readings of a tracker as those of one sight.
+    for (std::size_t item = 0; item < devices_[s]->items().size(); ++item) {
+      InstrumentReadings plan = empty_readings(study_.machine, *devices_[s]);
+      plan.measured.clear();
+      for (std::size_t k = 0; k < readings.size(); ++k) {
+        if (readings[k].setup != s || readings[k].item != item) continue;
+        plan.append(readings[k].pose, item, readings[k].inputs);
+        own.push_back(states.at(k));
+      }
+      see(s, plan, seen, counted);
+      if (seen[s].count() != own.size()) throw std::logic_error("planning: a candidate cannot be read any more");
+    }
+    give_states(own, seen[s].poses);
+  }
+  return candidate_rows(problem(seen));
 }
 
 std::vector<bool> PlanningModel::forbidden(const PoseList& poses) const {
@@ -268,8 +342,9 @@ Eigen::MatrixXd PlanningModel::weak_prior() const {
   constexpr double kLength_mm = 0.02, kAngle_rad = 6e-5, kSetUp = 1e3;
   Eigen::VectorXd information(static_cast<Index>(parameters_.size()));
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const double u =
-        (parameters_[i].is_angle ? kAngle_rad : kLength_mm) * (parameters_[i].id.is_machine() ? 1 : kSetUp);
+    double u = (parameters_[i].is_angle ? kAngle_rad : kLength_mm) * (parameters_[i].id.is_machine() ? 1 : kSetUp);
+    const std::size_t state = state_of_[i];
+    if (state != kNoState && largest_factor_[state] > 0) u /= largest_factor_[state];
     information[static_cast<Index>(i)] = 1 / (u * u);
   }
   return information.asDiagonal();
@@ -295,15 +370,23 @@ Eigen::MatrixXd PlanningModel::prediction_rows(const PoseList& poses) const {
   }
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(static_cast<Index>(3 * n), static_cast<Index>(parameters_.size()));
   std::vector<double> jacobian(wanted.size() * 3 * ChainPlan::kBlockSize);
+  const GivenStates given(machine, errors_);
+  std::vector<std::size_t> all(given.any() ? n : 0);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<double> values;
+  std::vector<const double*> state;
+  given.gather(poses, all, values, state);
   for (std::size_t first = 0; first < n; first += ChainPlan::kBlockSize) {
     const std::size_t count = std::min(ChainPlan::kBlockSize, n - first);
     const std::vector<const double*> axis = pointers(poses, first);
-    plan.differentiate({axis, count}, {}, {seen[0].data() + first, seen[1].data() + first, seen[2].data() + first},
-                       rows, wanted, jacobian.data(), 3 * count);
+    plan.differentiate({axis, count, state}, {},
+                       {seen[0].data() + first, seen[1].data() + first, seen[2].data() + first}, rows, wanted,
+                       jacobian.data(), 3 * count);
     for (std::size_t c = 0; c < wanted.size(); ++c)
       for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t k = 0; k < count; ++k)
           result(static_cast<Index>(3 * (first + k) + row), columns[c]) = jacobian[c * 3 * count + row * count + k];
+    for (const double*& column : state) column += column != nullptr ? count : 0;
   }
   // A rigid motion of the workpiece is a matter of its datum, not an error of the machine.
   Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(static_cast<Index>(3 * n), 6);

@@ -37,7 +37,7 @@ LeftOutPoses ScannedPoints::left_out() const {
 }
 
 ScannedPoints write_scanned_points(const ScannedPointsRequest& request, const JobOptions& options) {
-  refuse_states(request.machine, request.errors, "a scan");
+  refuse_states(request.machine, request.errors, "a scan", UsableStates::of_commands);
   ScanOptions scan = request.scan;
   if (request.indication_range) {
     const auto [lowest, highest] = *request.indication_range;

@@ -177,8 +177,8 @@ VerificationRequest read_verification(const VerificationFiles& files) {
 }
 
 Verification verify_compensation(const VerificationRequest& request, const VerificationOptions& options) {
-  refuse_states(request.machine, request.identified.errors, "a verification");
-  refuse_states(request.machine, request.truth.errors, "a verification");
+  refuse_states(request.machine, request.identified.errors, "a verification", UsableStates::of_commands);
+  refuse_states(request.machine, request.truth.errors, "a verification", UsableStates::of_commands);
   require_condition("--least-reduction", request.least_reduction);
   require_condition("--largest-ratio", request.largest_ratio);
   const auto tell = [&options](VerificationStep step, std::size_t done, std::size_t total) {

@@ -49,13 +49,30 @@ std::vector<std::vector<std::int8_t>> approaches(const Machine& machine, const E
   return all;
 }
 
-double largest_value(const Machine& machine, const ErrorSet& errors, std::size_t axis, Component component) {
+/// Largest factor of a state at the ends of the travels of all axes; 1 without a state.
+double largest_factor(const Machine& machine, std::size_t state) {
+  if (state == kNoState) return 1;
+  double largest = 0;
+  for (std::size_t corner = 0; corner < std::size_t{1} << machine.axes.size(); ++corner) {
+    std::vector<double> positions;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const KnownTravel travel = known_travel(machine, ErrorSet{}, i);
+      positions.push_back((corner >> i & 1) != 0 ? travel.to : travel.from);
+    }
+    largest = std::max(largest, std::abs(state_factor(machine, state, positions, {})));
+  }
+  return largest;
+}
+
+double largest_value(const Machine& machine, ErrorSet errors, std::size_t axis, Component component) {
   const KnownTravel travel = known_travel(machine, errors, axis);
   double largest = 0;
+  const double factor = largest_factor(machine, errors.motions.front().state);  // all have the same
+  for (ErrorMotion& motion : errors.motions) motion.state = kNoState;
   for (const double q : evenly_spaced(travel.from, travel.to, kSamples)) {
     largest = std::max(largest, std::abs(errors.evaluate(axis, q)[static_cast<std::size_t>(component)]));
   }
-  return largest;
+  return factor * largest;
 }
 
 }  // namespace
@@ -134,7 +151,7 @@ PoseDeviations ideal_deviations(const Machine& machine, const ErrorSet& errors, 
 std::vector<NamedErrors> errors_one_by_one(const Machine& machine, const ErrorSet& errors) {
   std::vector<NamedErrors> alone;
   for (const ErrorMotion& motion : errors.motions) {
-    const std::string name = error_motion_name(machine, motion.axis, motion.component);
+    const std::string name = error_motion_name(machine, motion.axis, motion.component, motion.state);
     auto found = std::find_if(alone.begin(), alone.end(), [&](const NamedErrors& one) { return one.name == name; });
     if (found == alone.end()) {
       NamedErrors named;
@@ -152,13 +169,13 @@ std::vector<NamedErrors> errors_one_by_one(const Machine& machine, const ErrorSe
   }
   for (const LocationError& location : errors.locations) {
     NamedErrors named;
-    named.name = location_error_name(machine, location.axis, location.component);
+    named.name = location_error_name(machine, location.axis, location.component, location.state);
     named.is_angle = is_rotation(location.component);
     // About (along) the axis's own direction it is its zero position, in the unit of the axis.
     if (is_zero_position_error(machine.axes[location.axis], location.component)) {
       named.is_angle = machine.axes[location.axis].kind == AxisKind::rotary;
     }
-    named.size = std::abs(location.value);
+    named.size = largest_factor(machine, location.state) * std::abs(location.value);
     named.errors.composition = errors.composition;
     named.errors.locations.push_back(location);
     alone.push_back(std::move(named));

@@ -73,9 +73,16 @@ ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine
 ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& path, const Machine& machine,
                         StatesOfErrors states = StatesOfErrors::refused);
 
-/// Refuses errors that depend on states, in a job that cannot take them into account.
+/// States that a job takes into account by itself.
+enum class UsableStates {
+  none,
+  of_commands  ///< those that follow from the commands at a pose: of the kinds axis and gravity, and products of these
+};
+
+/// Refuses errors that depend on other states, in a job that cannot take them into account.
 /// @param job  "a correction table". @throws InputError naming the first such error
-void refuse_states(const Machine& machine, const ErrorSet& errors, const std::string& job);
+void refuse_states(const Machine& machine, const ErrorSet& errors, const std::string& job,
+                   UsableStates usable = UsableStates::none);
 
 /// Text of an errors file; reading it back gives the same bits.
 /// @param covariance_file  name of the CSV with the covariance, beside the file; empty: none

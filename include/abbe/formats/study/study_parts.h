@@ -23,7 +23,7 @@ ChannelPlan read_channel_plan(TomlTable& table, const std::filesystem::path& fol
 /// Table `drift` of a set-up.
 std::optional<DriftPlan> read_drift(TomlTable& setup, bool simulated);
 
-PlanningStudy read_planning(TomlTable& table, const Machine& machine);
+PlanningStudy read_planning(TomlTable& table, const Machine& machine, const std::filesystem::path& folder);
 IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
 
 /// What a plan may name: targets ("reflectors" of a tracker, "items" of other instruments) and stations (tracker only).

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/formats/readings/channel_file.h"
 #include "abbe/instruments/measurement_plan.h"
 
 namespace abbe {
@@ -31,6 +33,21 @@ struct PlannedSetup {
   std::optional<double> reading;
 };
 
+/// Values of a state at which readings can be taken. Table [plan.state.NAME].
+struct PlannedState {
+  std::size_t state = 0;              ///< measured or lag; index into Machine::states
+  std::vector<double> values;         ///< increasing, in the unit of the state
+  double used_from = 0, used_to = 0;  ///< between which the errors will be used
+  double change = 0;  ///< s, to bring it to another of these values and to wait until the machine has settled
+};
+
+/// States as they are expected over the time in which readings can be taken. Table [plan.course].
+struct PlannedCourse {
+  ChannelPlan channels;
+  double slot = 0;   ///< s, length of the parts from which the plan chooses
+  double visit = 0;  ///< s, what it costs to begin with readings after a pause
+};
+
 /// What `abbe plan` is to choose from, and how much it may take. Table [plan] of a study.
 struct PlanningStudy {
   int readings = 0;  ///< to be chosen; 0: as many as the time allows
@@ -46,6 +63,9 @@ struct PlanningStudy {
   double reading = 0;                   ///< s, one reading
   std::vector<ForbiddenBox> forbidden;
   std::vector<PlannedSetup> setups;  ///< those that cost something else than the rest
+  std::vector<PlannedState> states;  ///< at most one of `states` and `course` is given
+  std::optional<PlannedCourse> course;
+  std::size_t conditions = 0;  ///< combinations of values, or parts of the course, to be used at most; 0: any number
 
   const PlannedSetup* find(const std::string& setup) const;
   double settle_of(const std::string& setup) const;

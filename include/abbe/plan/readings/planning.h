@@ -25,13 +25,15 @@ struct PlanningOptions {
   double time_s = std::numeric_limits<double>::infinity();  ///< sum of the costs, at most
   std::size_t repeats = 1;                                  ///< how often the same reading may be taken
   std::vector<unsigned char> eligible;                      ///< [candidates] 0: not to be chosen; empty: all may be
-  std::vector<std::size_t> start;  ///< choice to begin with instead of the greedy one; empty: greedy
-  int starts = 1;                  ///< the first is greedy, the others random; the best result counts
-  int most_passes = 10;            ///< over all chosen readings, looking for exchanges
-  double smallest_gain = 1e-7;     ///< exchanges that lower the criterion by less are not made; determinant: of its
-                                   ///< logarithm, variance: relative
-  double pass_gain = 1e-3;  ///< the search ends after a pass that lowers it by less; determinant: of its logarithm
-                            ///< per seen direction, variance: relative; 0: if no exchange helps
+  std::vector<std::uint32_t> group;        ///< [candidates] of which at most a number may be chosen; empty: no groups
+  std::vector<std::size_t> most_of_group;  ///< [groups] readings, repetitions counted
+  std::vector<std::size_t> start;          ///< choice to begin with instead of the greedy one; empty: greedy
+  int starts = 1;                          ///< the first is greedy, the others random; the best result counts
+  int most_passes = 10;                    ///< over all chosen readings, looking for exchanges
+  double smallest_gain = 1e-7;  ///< exchanges that lower the criterion by less are not made; determinant: of its
+                                ///< logarithm, variance: relative
+  double pass_gain = 1e-3;      ///< the search ends after a pass that lowers it by less; determinant: of its logarithm
+                                ///< per seen direction, variance: relative; 0: if no exchange helps
   std::uint64_t seed = 1;
   int threads = 0;                             ///< 0: all; the result does not depend on it
   std::function<void(double share)> progress;  ///< 0 to 1, called from one thread

@@ -40,6 +40,15 @@ void read_name(TomlTable& table, const Machine& machine, bool location, std::siz
   }
 }
 
+/// Whether a pose needs nothing but its commands for this state.
+bool follows_from_commands(const Machine& machine, std::size_t state) {
+  const MachineState& one = machine.states[state];
+  if (one.kind == StateKind::product) {
+    return follows_from_commands(machine, one.first) && follows_from_commands(machine, one.second);
+  }
+  return one.kind == StateKind::axis || one.kind == StateKind::gravity;
+}
+
 /// Key `state` of an error. @throws InputError
 std::size_t read_state_of_error(TomlTable& table, const Machine& machine, StatesOfErrors states) {
   if (!table.has("state")) return kNoState;
@@ -319,11 +328,23 @@ ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine
   return parse_errors(read_file_of_kind(path, ".errors.toml"), path, machine, states);
 }
 
-void refuse_states(const Machine& machine, const ErrorSet& errors, const std::string& job) {
-  const std::string first = first_error_with_state(machine, errors);
-  if (first.empty()) return;
-  throw InputError({.field = first}, "depends on a state, which " + job + " does not take into account",
-                   "errors without states");
+void refuse_states(const Machine& machine, const ErrorSet& errors, const std::string& job, UsableStates usable) {
+  const auto refuse = [&](std::size_t state, const std::string& error) {
+    if (state == kNoState || (usable == UsableStates::of_commands && follows_from_commands(machine, state))) return;
+    throw InputError({.field = error},
+                     usable == UsableStates::none
+                         ? "depends on a state, which " + job + " does not take into account"
+                         : fmt::format("depends on {} ({}), which {} does not take into account",
+                                       machine.states[state].name, state_kind_name(machine.states[state].kind), job),
+                     usable == UsableStates::none ? "errors without states"
+                                                  : "errors whose states follow from the commands (axis, gravity)");
+  };
+  for (const ErrorMotion& motion : errors.motions) {
+    refuse(motion.state, error_motion_name(machine, motion.axis, motion.component, motion.state));
+  }
+  for (const LocationError& location : errors.locations) {
+    refuse(location.state, location_error_name(machine, location.axis, location.component, location.state));
+  }
 }
 
 std::string errors_text(const Machine& machine, const ErrorsFile& contents, const std::string& covariance_file) {

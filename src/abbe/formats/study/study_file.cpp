@@ -173,7 +173,7 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
   study.threads = static_cast<int>(root.integer_or("threads", 0, 0, 1024));
   study.output = folder / root.text_or("output", "results/" + bare_name(path));
   if (auto table = root.optional_table("simulate")) study.simulation = read_simulation(*table, folder);
-  if (auto table = root.optional_table("plan")) study.planning = read_planning(*table, machine);
+  if (auto table = root.optional_table("plan")) study.planning = read_planning(*table, machine, folder);
   study.channels = read_channel_plan(root, folder, machine);
   for (TomlTable& table : root.tables("setup")) {
     study.setups.push_back(

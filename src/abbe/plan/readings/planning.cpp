@@ -23,6 +23,7 @@ class PlanSearch {
         by_variance_(options.criterion == PlanningCriterion::variance),
         design_(space, by_variance_ ? space.functionals(options.functionals) : Eigen::MatrixXd(), options.threads) {
     rules_.eligible = &options_.eligible;
+    if (!options_.group.empty()) rules_.group = &options_.group;
     rules_.repeats = options_.repeats;
     rules_.per_cost = space.has_costs() && std::isfinite(options.time_s);
   }
@@ -51,6 +52,7 @@ class PlanSearch {
   /// Adds until `count`; false if no candidate is left.
   bool grow(std::size_t count) {
     while (design_.chosen().size() < count) {
+      close_groups(rules_);
       const PlanDesign::Best best = design_.best_to_add(rules_);
       if (best.candidate == static_cast<std::size_t>(-1)) return false;
       design_.add(best.candidate);
@@ -78,6 +80,18 @@ class PlanSearch {
   }
   double time_left() const { return options_.time_s - design_.cost(); }
 
+  /// Marks the groups that are full, once the reading at a place is gone.
+  void close_groups(PlanDesign::Allowed& rules, std::size_t without = static_cast<std::size_t>(-1)) const {
+    if (rules.group == nullptr) return;
+    std::vector<std::size_t> left = options_.most_of_group;
+    for (std::size_t place = 0; place < design_.chosen().size(); ++place) {
+      std::size_t& own = left[options_.group[design_.chosen()[place]]];
+      if (place != without && own > 0) --own;
+    }
+    rules.full.assign(left.size(), 0);
+    for (std::size_t g = 0; g < left.size(); ++g) rules.full[g] = left[g] == 0 ? 1 : 0;
+  }
+
   bool refresh() {
     return design_.updates() < kUpdatesBetweenFactorisations || design_.rebuild(design_.chosen(), ridge_);
   }
@@ -93,6 +107,7 @@ class PlanSearch {
     PlanDesign::Allowed rules = rules_;
     while (design_.chosen().size() < count_limit()) {
       rules.most_cost = time_left();
+      close_groups(rules);
       const PlanDesign::Best best = design_.best_to_add(rules);
       if (best.candidate == static_cast<std::size_t>(-1)) break;
       design_.add(best.candidate);
@@ -130,12 +145,17 @@ class PlanSearch {
     for (std::size_t i = 0; i < space_.count(); ++i)
       if (options_.eligible.empty() || options_.eligible[i] != 0) order.push_back(i);
     double time = 0;
+    std::vector<std::size_t> room = options_.most_of_group;
     const std::size_t wanted = std::min(count_limit(), order.size());
     for (std::size_t k = 0; k < order.size() && chosen.size() < (wanted + 1) / 2 && time < options_.time_s / 2; ++k) {
       const std::size_t left = order.size() - k;
       std::swap(order[k],
                 order[k + std::min(left - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(left)))]);
       if (time + space_.cost(order[k]) > options_.time_s) continue;
+      if (!room.empty() && room[options_.group[order[k]]]-- == 0) {
+        room[options_.group[order[k]]] = 0;
+        continue;
+      }
       chosen.push_back(order[k]);
       time += space_.cost(order[k]);
     }
@@ -213,6 +233,7 @@ class PlanSearch {
     rules.per_cost = false;
     rules.most_cost = time_left() + space_.cost(design_.chosen()[place]);
     rules.ceiling = change_of(options_.smallest_gain);
+    close_groups(rules, place);
     const PlanDesign::Best best = design_.best_instead(place, rules);
     if (!(best.change < change_of(options_.smallest_gain)) || !design_.exchange(place, best.candidate)) return false;
     ++plan.exchanges;
@@ -236,6 +257,10 @@ void check(const PlanningSpace& space, const PlanningOptions& options) {
     throw std::invalid_argument("planning: neither a number of readings nor a time is given");
   if (!options.eligible.empty() && options.eligible.size() != space.count())
     throw std::invalid_argument("planning: eligible is not one per candidate");
+  if (!options.group.empty() && options.group.size() != space.count())
+    throw std::invalid_argument("planning: group is not one per candidate");
+  for (const std::uint32_t group : options.group)
+    if (group >= options.most_of_group.size()) throw std::invalid_argument("planning: a group without a number");
   for (const std::size_t i : options.start)
     if (i >= space.count()) throw std::invalid_argument("planning: the start is not among the candidates");
   if (options.repeats == 0) throw std::invalid_argument("planning: every reading would be refused");

@@ -274,7 +274,8 @@ double PlanDesign::loss(std::size_t place) const {
 
 bool PlanDesign::allowed(std::size_t candidate, const Allowed& rules) const {
   return (!rules.eligible || rules.eligible->empty() || (*rules.eligible)[candidate] != 0) &&
-         times_[candidate] < rules.repeats && space_.cost(candidate) <= rules.most_cost;
+         (!rules.group || rules.full[(*rules.group)[candidate]] == 0) && times_[candidate] < rules.repeats &&
+         space_.cost(candidate) <= rules.most_cost;
 }
 
 void PlanDesign::keep_better(std::size_t candidate, double change, const Allowed& rules, Best& best) const {

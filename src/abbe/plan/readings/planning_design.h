@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -61,9 +62,12 @@ class PlanDesign {
     double score = kImpossible;   ///< change, divided by the cost where `per_cost`
     double tie = 0;               ///< this one takes the place of another if its score is lower by more
   };
-  /// Which candidates are allowed: not more than `repeats` times, of a cost up to `most_cost`, eligible.
+  /// Which candidates are allowed: not more than `repeats` times, of a cost up to `most_cost`, eligible, of a group
+  /// that is not full.
   struct Allowed {
     const std::vector<unsigned char>* eligible = nullptr;  ///< null: all
+    const std::vector<std::uint32_t>* group = nullptr;     ///< null: no groups
+    std::vector<unsigned char> full{};                     ///< [groups] 1: no more of this one
     std::size_t repeats = 1;
     double most_cost = std::numeric_limits<double>::infinity();
     bool per_cost = false;
