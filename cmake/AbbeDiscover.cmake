@@ -23,6 +23,7 @@ endfunction()
 # Repetitions by the hundred and long simulated programs: minutes each under the sanitizers, which see the same code in the
 # other tests. All run in `make test` or `make long`.
 set(abbe_not_sanitized
+  DriftStudy.A* DriftStudy.TheIntensityOfAWalkIsEstimated
   FineRegistration.CovarianceIsThatOfManyRepetitions
   FitRivals.EveryRivalIsBetterThanAllShapesBesideIt
   LeastSquaresFit.CovarianceIsTheScatterOfManyFits
@@ -35,7 +36,7 @@ set(abbe_not_sanitized
 # Slow tests, with many repetitions, shapes or commands: two thirds of the time of all unit tests. `make quick` runs them;
 # `make unit`, which is for every change, does not.
 set(abbe_not_unit
-  ChainPlanJacobian.* ComparedCampaigns.AKnownChange* ComparedCampaigns.WithoutAChange* DamagedStepFile.*
+  ChainPlanJacobian.* ComparedCampaigns.AKnownChange* ComparedCampaigns.WithoutAChange* DamagedStepFile.* DriftStudy.*
   EdgeSection.* EvaluationOfAContour.* FineRegistration.* FitRivals.* FitSimulation.* FrozenErrorsOfARequest.*
   LeastSquaresFit.CovarianceIs* LineTables.* LiuPlan.* MonteCarlo.* MoveSplitting.*
   MachineTrends.ErrorsThatStandStill* OrderSelection.* ProgramCorrection.* ProgramReversals.* Registration.*

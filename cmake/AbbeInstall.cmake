@@ -12,8 +12,9 @@ if(TARGET abbe-step)
   install(TARGETS abbe-step RUNTIME DESTINATION lib/abbe COMPONENT static EXCLUDE_FROM_ALL)
   install(SCRIPT ${PROJECT_SOURCE_DIR}/packaging/tarball/bundle.cmake COMPONENT static EXCLUDE_FROM_ALL)
 endif()
-# The examples: those of the help, and what `abbe reproduce` reads. The closed loop is a script of the source tree.
-install(DIRECTORY examples DESTINATION ${abbe_data} COMPONENT data PATTERN closed_loop EXCLUDE)
+# The examples: those of the help, and what `abbe reproduce` reads. The closed loop and the thermal day are scripts of the
+# source tree.
+install(DIRECTORY examples DESTINATION ${abbe_data} COMPONENT data PATTERN closed_loop EXCLUDE PATTERN thermal_day EXCLUDE)
 # The published readings that `abbe reproduce` recomputes.
 install(DIRECTORY tests/golden/aguado tests/golden/liu tests/golden/ma tests/golden/yin DESTINATION ${abbe_data}/golden
   COMPONENT data FILES_MATCHING PATTERN "*.csv" PATTERN "*.json")

@@ -13,7 +13,7 @@
 namespace abbe::python {
 
 /// States of poses as they come from Python: a dict of columns, {"ambient_degC": number or [n]}.
-using StatesArgument = std::optional<nb::dict>;
+using StatesArgument = std::optional<nb::typed<nb::dict, nb::str, ArrayLike>>;
 
 /// Values of measured and lag states, and sides of approach, at every pose of a call.
 class GivenColumns {

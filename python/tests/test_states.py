@@ -73,7 +73,7 @@ def test_states_of_a_machine_are_described(mill, errors):
     assert (reach.kind, reach.axis, reach.factor_unit) == ("axis", "Z", "mm")
     assert "spindle" in repr(spindle)
     assert errors.states == ["ambient", "slow", "reach"]
-    assert errors.names[2:4] == ["EXX*ambient[P0]", "EXX*ambient[P1]"]
+    assert errors.names[2:4] == ["EXX*ambient[s^0]", "EXX*ambient[s^1]"]
 
 
 def test_values_by_pose_give_what_errors_at_each_state_give(errors):
@@ -90,11 +90,11 @@ def test_values_by_pose_give_what_errors_at_each_state_give(errors):
     poses = model.poses(positions, states=given)
     assert poses.covered.all() and model.covered(positions, states=given).all()
     numpy.testing.assert_array_equal(poses.points_mm, model.points(positions, states=given))
-    # The same from the values: monomials of X over its travel, -250 to 250 mm.
-    x = positions[:, 0] / 250
-    expected = 1e-3 * (1 + 2 * x + (ambient - 20) * 3 * x)
-    reach = together[:, 0] - expected
-    numpy.testing.assert_allclose(numpy.abs(reach), numpy.abs(1e-5 * positions[:, 2] * positions[:, 1]), atol=2e-5)
+    # A table moved too far in X takes the tool the other way: monomials of X over its travel, -250 to 250 mm.
+    warm = together - model.deviations(positions, states={"ambient_degC": 20, "slow_degC": 30})
+    numpy.testing.assert_allclose(warm[:, 0], -1e-3 * (ambient - 20) * 3 * positions[:, 0] / 250, atol=1e-9)
+    spindle = together - model.deviations(positions, states={"ambient_degC": ambient, "slow_degC": 22})
+    numpy.testing.assert_allclose(spindle[:, 2], 8 * 5e-3, atol=1e-9)
 
 
 def test_derivatives_are_those_of_finite_differences(errors):
@@ -131,9 +131,10 @@ def test_covariance_goes_with_the_state(errors):
     size = len(errors)
     errors.covariance = numpy.diag(numpy.arange(1, size + 1) * 1e-8)
     there = errors.at_state({"ambient_degC": 26, "slow_degC": 22})
-    # EXX[P1] + 6 K * EXX*ambient[P1]
-    index = there.names.index("EXX[P1]")
-    assert there.covariance[index, index] == pytest.approx(1e-8 * (2 + 36 * 4))
+    # The standard uncertainty of EXX*ambient[s^1] times 6 K.
+    assert there.names[3] == "EXX[s^1]" and there.states == ["reach"]
+    assert there.covariance[3, 3] == pytest.approx(4e-8 * 36)
+    assert there.covariance[1, 1] == pytest.approx(2e-8)
 
 
 def test_what_is_missing_or_wrong_is_named(mill, errors):

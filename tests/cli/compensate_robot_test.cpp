@@ -91,7 +91,10 @@ TEST_F(CompensateRobot, PosesOfAnArmUnderLoadAreReachedWhole) {
   const Machine machine = read_machine(examples + "loaded.machine.toml");
   const ErrorSet errors = read_errors(examples + "loaded.errors.toml", machine, StatesOfErrors::allowed).errors;
   const PoseList before = read_poses(examples + "loaded.poses.csv", machine);
-  const PoseList after = read_poses((folder.path() / "corrected.csv").string(), machine);
+  MeasurementOptions of_result;
+  of_result.mapping.ignore = {"status", "correction_um", "u_correction_um", "position_left_um",
+                              "orientation_left_urad"};
+  const PoseList after = read_poses((folder.path() / "corrected.csv").string(), machine, of_result);
   ASSERT_EQ(after.count(), before.count());
   const std::size_t payload = find_state(machine, "payload");
   for (std::size_t k = 0; k < before.count(); ++k) {
@@ -100,7 +103,7 @@ TEST_F(CompensateRobot, PosesOfAnArmUnderLoadAreReachedWhole) {
     const RigidTransform wanted = nominal_workpiece_from_tool(machine, before.pose(k));
     const RigidTransform off = actual_workpiece_from_tool(machine, errors, before.pose(k), given);
     const RigidTransform actual = actual_workpiece_from_tool(machine, errors, after.pose(k), given);
-    EXPECT_GE((off.translation - wanted.translation).norm(), 0.1);
+    EXPECT_GE((off.translation - wanted.translation).norm(), 0.05);
     EXPECT_LE((actual.translation - wanted.translation).norm(), 1e-6);
     EXPECT_LE((actual.rotation - wanted.rotation).norm(), 1e-8);
   }

@@ -60,7 +60,7 @@ class States : public CommandTest {
     folder.write("warm.errors.toml", errors_of(false));
     folder.write("folded.errors.toml", errors_of(true));
     folder.write("part.ngc", "G21 G90 G17\nG0 X10 Y10 Z200\nG1 X500 Y350 Z100 F2000\nG1 X20 Y300\nM2\n");
-    folder.write("poses.csv", "X_mm,Y_mm,Z_mm\n10,20,30\n600,400,300\n");
+    folder.write("poses.csv", "X_mm,Y_mm,Z_mm\n10,20,30\n590,390,290\n");
   }
 
   const std::vector<std::string> at = {"--state", "hall_degC=24", "--state", "column_degC=22"};
@@ -71,6 +71,16 @@ class States : public CommandTest {
     arguments.push_back(errors + ".errors.toml");
     arguments.insert(arguments.end(), more.begin(), more.end());
     return abbe(arguments);
+  }
+
+  /// Frozen errors without the checksums of the file and of the texts they were made from, which tell their state.
+  static std::string without_source(std::string bytes) {
+    return bytes.rfind(
+               "\x89"
+               "ABBEC",
+               0) == 0
+               ? bytes.erase(24, 16)
+               : bytes;
   }
 
   /// A command with the errors at their state writes what it writes with the errors that were folded by hand, and says
@@ -88,7 +98,7 @@ class States : public CommandTest {
     EXPECT_THAT(by_hand.out, Not(HasSubstr("errors taken at")));
     const CommandResult at_state = run(arguments, "warm", with({"-o", output, "--force", at[0], at[1], at[2], at[3]}));
     ASSERT_EQ(at_state.exit_code, ExitCode::done) << at_state.err;
-    EXPECT_EQ(folder.read(output), expected);
+    EXPECT_EQ(without_source(folder.read(output)), without_source(expected));
     EXPECT_THAT(at_state.out, HasSubstr("errors taken at hall_degC = 24, column_degC = 22\n"));
     const CommandResult json =
         run(arguments, "warm", with({"-o", output, "--force", "--json", at[0], at[1], at[2], at[3]}));

@@ -52,13 +52,16 @@ std::size_t write_readings(const std::filesystem::path& from, const std::filesys
   return joints.size();
 }
 
-/// Root mean square distance of held-out readings from the identified arm, mm.
-double held_out_rms(const std::filesystem::path& study_file) {
+UnseenPoses held_out(const std::filesystem::path& study_file) {
   const Study study = read_study(study_file);
   RunOptions options;
   options.map = false;
   const StudyResult result = run_study(study, options);
-  const UnseenPoses unseen = evaluate_unseen(study, result);
+  return evaluate_unseen(study, result);
+}
+
+/// Root mean square distance of held-out readings from the identified arm, mm.
+double rms_of(const UnseenPoses& unseen) {
   double square = 0;
   for (const double distance : unseen.after) square += distance * distance;
   return std::sqrt(square / static_cast<double>(unseen.after.size()));
@@ -70,12 +73,18 @@ TEST(MeasuredArm, ComplianceUnderGravityLeavesLessThanHalfOfWhatGeometryLeaves) 
   const std::filesystem::path folder = test::empty_folder("measured_arm");
   std::filesystem::copy(kStudies, folder, std::filesystem::copy_options::recursive);
   ASSERT_EQ(write_readings(data, folder), 1000U);
-  const double geometry = held_out_rms(folder / "geometry.study.toml");
-  const double compliance = held_out_rms(folder / "compliance.study.toml");
+  const double geometry = rms_of(held_out(folder / "geometry.study.toml"));
+  const double compliance = rms_of(held_out(folder / "compliance.study.toml"));
   RecordProperty("geometry_um", std::to_string(1e3 * geometry));
   RecordProperty("compliance_um", std::to_string(1e3 * compliance));
-  EXPECT_NEAR(geometry, 0.257, 0.01);
+  EXPECT_NEAR(geometry, 0.2675, 0.01);
   EXPECT_LE(compliance, 0.1);
+  const UnseenPoses noise = held_out(folder / "pose_noise.study.toml");
+  EXPECT_LE(rms_of(noise), 0.14);
+  ASSERT_TRUE(noise.readings);
+  const double within =
+      static_cast<double>(noise.readings->components_within) / static_cast<double>(noise.readings->components);
+  EXPECT_NEAR(within, 0.95, 0.03);
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ def copy_display_modules(folder):
 def configure(folder, display, kinematics, joints, job, recorded, settings=(), lines=()):
     """The files of a run.
 
+    @param display     its name in this folder, or where it stands
     @param kinematics  the module and its parameters
     @param recorded    for each recorder the pins that it records
     @param lines       further lines of the HAL file, once the module is loaded
@@ -75,7 +76,7 @@ def configure(folder, display, kinematics, joints, job, recorded, settings=(), l
     (folder / "job.json").write_text(json.dumps(job))
     copy_display_modules(folder)
     headless.write_configuration(folder, HERE / display,
-                                 headless.ini_text(display, kinematics, joints, velocity=20000),
+                                 headless.ini_text(pathlib.Path(display).name, kinematics, joints, velocity=20000),
                                  headless.hal_text(len(joints), recorded, lines),
                                  tool_table=(folder / "tools.tbl").read_text())
 

@@ -10,7 +10,7 @@
 namespace abbe {
 
 /// Readings of one set of observations that were taken at the same pose (equal axis commands, wherever they stand in
-/// the data), and what a displacement common to them does to their residuals.
+/// the data) or belong together otherwise, and what a displacement common to them does to their residuals.
 ///
 /// With Z the rows of Observations::displacement_rows() of all used readings of a pose, [residuals, 3], the residuals
 /// depend on the displacement along the directions Z u_j only, u_j and d_j the eigenvectors and eigenvalues of Z'Z.
@@ -23,8 +23,10 @@ class PoseGroups {
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< u_j, a column each
   };
 
-  /// @param use  per reading, as SelectedObservations::use
-  PoseGroups(const Observations& observations, const std::vector<std::uint8_t>& use);
+  /// @param use     per reading, as SelectedObservations::use
+  /// @param common  per reading, as SelectedObservations::common
+  PoseGroups(const Observations& observations, const std::vector<std::uint8_t>& use,
+             const std::vector<std::size_t>& common = {});
 
   /// Takes the derivatives anew at the present point of the observations.
   void update();

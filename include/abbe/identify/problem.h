@@ -45,6 +45,9 @@ struct SelectedObservations {
   std::shared_ptr<Observations> observations;  ///< its present unknown_values() are the start; shared by copies
   std::vector<std::size_t> unknowns;           ///< estimated ones, indices into Observations::unknowns()
   std::vector<std::uint8_t> use;               ///< per reading: 0 leaves it out; empty: all are used
+  /// Per reading: the same number for readings whose displacement is common, where variances are estimated; empty: for
+  /// those at the same pose.
+  std::vector<std::size_t> common{};
 };
 
 /// What is to be identified from what.

@@ -11,8 +11,10 @@ namespace abbe {
 /// Which variances of the readings are estimated from their residuals; the others stay as stated (factor 1, no noise).
 struct VarianceComponentChoice {
   bool variance_factor = false;  ///< of the covariances stated for the readings, one for all observations
-  bool pose_noise = false;       ///< of a displacement common to all readings at one pose
-  int max_iterations = 50;       ///< identifications
+  bool pose_noise =
+      false;              ///< of a displacement common to all readings at one pose, or as SelectedObservations::common
+  bool by_block = false;  ///< that says which belong to one block of time: for words
+  int max_iterations = 50;  ///< identifications
   bool any() const { return variance_factor || pose_noise; }
 };
 

@@ -10,7 +10,7 @@ namespace abbe {
 /// Variances of readings, where the uncertainties stated for them are not the whole truth.
 struct ReadingVariance {
   double factor = 1;  ///< variance factor: multiplies the stated covariance of every reading
-  double pose = 0;    ///< mm^2, of each coordinate of a displacement common to all readings at one pose
+  double pose = 0;    ///< mm^2, of each coordinate of a displacement common to all readings at one pose or of one block
   bool operator==(const ReadingVariance&) const = default;
 };
 
@@ -35,8 +35,10 @@ struct WeighingPoint {
 /// Readings that are not used take no part in the weighting of others. Everything not weighted is that of the others.
 class WeighedObservations : public Observations {
  public:
-  /// @param use           per reading, as SelectedObservations::use
-  WeighedObservations(std::shared_ptr<Observations> observations, const std::vector<std::uint8_t>& use);
+  /// @param use     per reading, as SelectedObservations::use
+  /// @param common  per reading, as SelectedObservations::common
+  WeighedObservations(std::shared_ptr<Observations> observations, const std::vector<std::uint8_t>& use,
+                      const std::vector<std::size_t>& common = {});
 
   /// Sets the variances, and z at the present point.
   /// @param variance  factor > 0, pose >= 0

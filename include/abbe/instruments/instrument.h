@@ -58,6 +58,7 @@
 #include "abbe/errors/poses.h"
 #include "abbe/instruments/observations.h"
 #include "abbe/instruments/reading_mistakes.h"
+#include "abbe/instruments/setup_drift.h"
 #include "abbe/instruments/setup_quantity.h"
 
 namespace abbe {
@@ -85,8 +86,9 @@ struct InstrumentReadings {
   /// [components (components + 1) / 2][count] or empty: variances, then covariances (xx, yy, zz, xy, xz, yz), where the
   /// data state them; `uncertainty` is then empty.
   std::vector<std::vector<double>> covariance;
-  std::vector<double> time_s;           ///< [count] or empty
-  std::vector<std::string> point_name;  ///< [count] name of the point in the input, or empty: it gives none
+  std::vector<double> time_s;                 ///< [count] or empty
+  std::vector<std::string> point_name;        ///< [count] name of the point in the input, or empty: it gives none
+  std::shared_ptr<const SetupDrift> drift{};  ///< null: the set-up stands still; else `time_s` is needed
 
   std::size_t count() const { return item.size(); }
   /// Adds one reading to a plan (nothing measured yet).

@@ -39,7 +39,9 @@ struct CampaignSetup {
   std::vector<std::uint32_t> outliers;      ///< simulation: readings made to outliers
   std::size_t hidden = 0;                   ///< simulation: sights left out for lack of a line of sight
   std::vector<std::string> contradictions;  ///< in words, where a file of readings and the study differ
-  std::size_t judged_places = 0;  ///< by find_start_values(): from where readings can be compared with the machine
+  std::size_t judged_places = 0;   ///< by find_start_values(): from where readings can be compared with the machine
+  std::optional<DriftPlan> drift;  ///< as Setup::drift; find_start_values() puts it into the readings
+  std::shared_ptr<const SetupDrift> true_drift;  ///< simulation
   std::vector<UnexplainedReadings> unexplained;  ///< by find_start_values(): the nominal machine does not explain them
 
   const PoseList& poses() const { return readings.poses; }

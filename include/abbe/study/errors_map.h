@@ -63,7 +63,11 @@ struct ErrorsMap {
   std::optional<VolumetricFigures> figures;  ///< with the datum fitted only: without, they are other quantities
   PartialErrors partial;                     ///< what the errors do not state
 
-  LeftOutPoses left_out() const { return {.all = stated.poses.count(), .not_covered = before.statistics.excluded}; }
+  LeftOutPoses left_out() const {
+    return {.all = stated.poses.count(),
+            .not_covered = before.statistics.excluded,
+            .extrapolated = partial.at_state.outside};
+  }
 };
 
 /// Maps errors over a grid or at given poses, before and after a correction. Opens no file and prints nothing.

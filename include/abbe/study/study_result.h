@@ -12,7 +12,9 @@
 #include "abbe/identify/trust/trust.h"
 #include "abbe/identify/trust/unseen.h"
 #include "abbe/identify/variance_components.h"
+#include "abbe/identify/walk_intensity.h"
 #include "abbe/study/campaign.h"
+#include "abbe/study/chosen_terms.h"
 #include "abbe/study/model.h"
 #include "abbe/study/not_identified.h"
 #include "abbe/study/unseen.h"
@@ -47,10 +49,12 @@ struct EarlierResult {
 struct StudyResult {
   Campaign campaign;
   StudyModel model;
+  std::optional<ChosenTerms> terms;  ///< with states, where the study leaves a choice
   std::optional<OrderSelection> order_selection;
   std::vector<Identification> stages;
   Identification identification;
   std::optional<WeighedIdentification> weighed;  ///< variances of the readings, if estimated; its result is moved out
+  std::vector<EstimatedWalk> walks;              ///< intensities of random walks, where they are estimated
   std::optional<MonteCarloResult> monte_carlo;
   std::optional<UnseenPoses> unseen;
   std::optional<VolumetricFigures> volumetric;  ///< over the grid of all commands; usable results only

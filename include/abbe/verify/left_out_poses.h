@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace abbe {
 
@@ -12,6 +13,7 @@ struct LeftOutPoses {
   std::size_t outside_travel = 0;  ///< their corrected commands leave the travel
   std::size_t not_reached = 0;     ///< no command of the axes that are corrected reaches the point
   const char* what = "poses of the map";
+  std::vector<std::string> extrapolated{};  ///< what of all poses lies beyond what was measured, a sentence each
 
   std::size_t count() const { return not_covered + outside_travel + not_reached; }
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "abbe/geometry/decompositions.h"
 
@@ -12,7 +13,8 @@ constexpr double kNotSeen = 1e-12;  // of the largest square: below is rounding
 
 }  // namespace
 
-PoseGroups::PoseGroups(const Observations& observations, const std::vector<std::uint8_t>& use)
+PoseGroups::PoseGroups(const Observations& observations, const std::vector<std::uint8_t>& use,
+                       const std::vector<std::size_t>& common)
     : observations_(&observations), rows_(static_cast<std::size_t>(observations.rows())) {
   const std::size_t count = observations.reading_count();
   std::map<std::vector<double>, std::size_t> known;
@@ -20,7 +22,11 @@ PoseGroups::PoseGroups(const Observations& observations, const std::vector<std::
   for (std::size_t k = 0; k < count; ++k) {
     std::size_t group = groups_.size();
     const bool used = use.empty() || use[k] != 0;
-    if (used) group = known.emplace(observations.positions(k), group).first->second;
+    if (used) {
+      std::vector<double> key =
+          common.empty() ? observations.positions(k) : std::vector<double>{static_cast<double>(common[k])};
+      group = known.emplace(std::move(key), group).first->second;
+    }
     if (group == groups_.size()) groups_.emplace_back().used = used;
     groups_[group].readings.push_back(k);
     group_of_[k] = group;

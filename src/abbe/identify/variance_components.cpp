@@ -55,7 +55,8 @@ class VarianceEstimation {
     result_.components.estimated = choice;
     result_.problem = problem;
     for (SelectedObservations& selected : result_.problem.observations) {
-      result_.observations.push_back(std::make_shared<WeighedObservations>(selected.observations, selected.use));
+      result_.observations.push_back(
+          std::make_shared<WeighedObservations>(selected.observations, selected.use, selected.common));
       selected.observations = result_.observations.back();
       poses_.push_back(&result_.observations.back()->poses());
     }
@@ -82,7 +83,7 @@ class VarianceEstimation {
       // At zero the pose noise stays there as long as the likelihood falls from there.
       const bool pose = choice_.pose_noise && (variance.pose > 0 || at.score[1] > 0);
       const Scoring now = scoring(at, choice_.variance_factor, pose);
-      if (!now.solved) return fail(IdentifyStatus::rank_deficient, kInseparable);
+      if (!now.solved) return fail(IdentifyStatus::rank_deficient, inseparable());
       if (now.decrement <= kComponentsSettled) return settle(at);
       if (components.iterations >= choice_.max_iterations)
         return fail(IdentifyStatus::no_convergence,
@@ -97,6 +98,11 @@ class VarianceEstimation {
  private:
   static constexpr const char* kInseparable =
       "the readings do not tell the variance factor from the pose noise: only poses with several readings do";
+  static constexpr const char* kInseparableBlocks =
+      "the readings do not tell the variance factor from the noise of a block of time: only blocks with several "
+      "readings "
+      "do";
+  const char* inseparable() const { return choice_.by_block ? kInseparableBlocks : kInseparable; }
 
   bool fit() {
     // Derivatives by the displacement are those at the last estimates; the fit itself begins where the problem does.
@@ -120,8 +126,10 @@ class VarianceEstimation {
     if (!choice_.pose_noise) return "";
     std::size_t most = 0;
     for (const PoseGroups* poses : poses_) most = std::max(most, poses->most_readings());
+    if (most == 0 && choice_.by_block)
+      return "the readings do not see a displacement that is common to a block of time";
     if (most == 0) return "the readings do not see a displacement at their pose: they have no pose noise";
-    return choice_.variance_factor && most < 2 ? kInseparable : "";
+    return choice_.variance_factor && most < 2 ? inseparable() : "";
   }
 
   // Towards zero in steps, because an estimate that is small is not yet none.
@@ -133,7 +141,7 @@ class VarianceEstimation {
 
   void settle(const RestrictedLikelihood& at) {
     const Scoring whole = scoring(at, choice_.variance_factor, choice_.pose_noise);
-    if (!whole.solved) return fail(IdentifyStatus::rank_deficient, kInseparable);
+    if (!whole.solved) return fail(IdentifyStatus::rank_deficient, inseparable());
     result_.components.covariance = whole.covariance;
     result_.components.pose_noise_at_zero = choice_.pose_noise && result_.components.variance.pose == 0;
     result_.components.converged = true;

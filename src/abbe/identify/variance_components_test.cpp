@@ -208,5 +208,38 @@ TEST(VarianceComponents, that_do_not_settle_are_no_result) {
   EXPECT_NE(found.identification.message.find("have not settled after 3"), std::string::npos);
 }
 
+/// Readings in blocks that have nothing to do with their poses: reading k belongs to block k % blocks.
+TEST(VarianceComponents, noise_common_to_a_block_is_found_over_many_draws) {
+  constexpr std::size_t kBlocks = 40, kPerBlock = 5, kDraws = 40;
+  double mean_noise = 0, squares = 0;
+  for (std::size_t draw = 0; draw < kDraws; ++draw) {
+    // Every reading is a pose of its own, so that poses alone would not show any common noise.
+    PoseObservations observations(
+        kBlocks * kPerBlock, [&] { return PoseObservations::simulate(100 + draw, kBlocks, kPerBlock, 1.44, 0.03); }());
+    Problem problem = function_problem({&observations});
+    for (std::size_t k = 0; k < kBlocks * kPerBlock; ++k) problem.observations[0].common.push_back(k % kBlocks);
+    const WeighedIdentification found =
+        identify_with_variances(problem, {.variance_factor = true, .pose_noise = true, .by_block = true});
+    ASSERT_TRUE(found.components.converged) << found.identification.message;
+    mean_noise += found.components.variance.pose / kDraws;
+    const double deviation = (found.components.variance.pose - 0.0009) / std::sqrt(found.components.covariance(1, 1));
+    squares += deviation * deviation / kDraws;
+  }
+  // The variance of one draw is about 0.0009 sqrt(2/115): 0.00012.
+  EXPECT_NEAR(mean_noise, 0.0009, 4 * 0.00013 / std::sqrt(1.0 * kDraws));
+  EXPECT_GT(squares, 0.5);
+  EXPECT_LT(squares, 1.7);
+}
+
+TEST(VarianceComponents, says_that_blocks_of_one_reading_show_nothing_in_common) {
+  PoseObservations observations(30, PoseObservations::simulate(5, 30, 1, 1, 0.03));
+  Problem problem = function_problem({&observations});
+  for (std::size_t k = 0; k < 30; ++k) problem.observations[0].common.push_back(k);
+  const WeighedIdentification found =
+      identify_with_variances(problem, {.variance_factor = true, .pose_noise = true, .by_block = true});
+  EXPECT_EQ(found.identification.status, IdentifyStatus::rank_deficient);
+  EXPECT_NE(found.identification.message.find("block of time"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace abbe

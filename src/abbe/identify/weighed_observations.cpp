@@ -51,8 +51,8 @@ ReadingsOutside& readings_outside() {
 }  // namespace
 
 WeighedObservations::WeighedObservations(std::shared_ptr<Observations> observations,
-                                         const std::vector<std::uint8_t>& use)
-    : observations_(std::move(observations)), poses_(*observations_, use) {
+                                         const std::vector<std::uint8_t>& use, const std::vector<std::size_t>& common)
+    : observations_(std::move(observations)), poses_(*observations_, use, common) {
   weigh({});
 }
 

@@ -73,6 +73,7 @@ void InstrumentReadings::append(const InstrumentReadings& more, bool same_clock)
   append_columns(covariance, more.covariance);
   const double after = same_clock || time_s.empty() ? 0 : time_s.back();
   for (const double time : more.time_s) time_s.push_back(after + time);
+  if (drift == nullptr) drift = more.drift;
 }
 
 InstrumentReadings InstrumentReadings::subset(const std::vector<std::size_t>& readings) const {
@@ -94,6 +95,7 @@ InstrumentReadings InstrumentReadings::subset(const std::vector<std::size_t>& re
   for (const std::size_t k : readings) {
     if (!point_name.empty()) part.point_name.push_back(point_name[k]);
   }
+  part.drift = drift;
   return part;
 }
 

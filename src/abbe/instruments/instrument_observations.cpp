@@ -59,6 +59,7 @@ struct InstrumentObservations::Implementation {
   Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();
   ReversalShift reversal;
   GivenStates given_states;
+  ReadingDrift drift;
 
   std::size_t rows() const { return instrument->components().size(); }
   static std::size_t lower(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }
@@ -78,7 +79,13 @@ struct InstrumentObservations::Implementation {
   void unweight(std::size_t reading, double* components) const;
   std::size_t find_members(std::size_t first, std::size_t count, std::size_t pair, InstrumentScratch& s) const;
   void load(const BodyPair& pair, std::size_t first, std::size_t members, InstrumentScratch& s) const;
-  void see(const BodyPair& pair, std::size_t members, InstrumentScratch& s) const;
+  void see(const BodyPair& pair, std::size_t first, std::size_t members, InstrumentScratch& s) const;
+  /// The bodies as a set-up sees them that has moved.
+  void move(std::size_t first, std::size_t members, InstrumentScratch& s) const;
+  /// Columns of the drift among the set-up's, and forces back in the frame of the body.
+  void take_drift(std::size_t first, std::size_t members, std::size_t count,
+                  std::span<const std::size_t> setup_parameters, double* columns, std::size_t stride,
+                  InstrumentScratch& s) const;
   void evaluate_pair(const BodyPair& pair, std::size_t members, std::size_t first, std::size_t count,
                      std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters,
                      double* residuals, double* jacobian, std::size_t stride) const;
@@ -131,7 +138,7 @@ void InstrumentObservations::Implementation::load(const BodyPair& pair, std::siz
   for (int c = 0; c < 3; ++c) std::fill_n(s.start[c], members, on_tool ? tool_offset_error[c] : 0.0);
 }
 
-void InstrumentObservations::Implementation::see(const BodyPair& pair, std::size_t members,
+void InstrumentObservations::Implementation::see(const BodyPair& pair, std::size_t first, std::size_t members,
                                                  InstrumentScratch& s) const {
   RotationArrays rotation;
   for (int i = 0; i < 9; ++i) rotation.r[i] = s.rotation[i];
@@ -141,6 +148,46 @@ void InstrumentObservations::Implementation::see(const BodyPair& pair, std::size
   for (int c = 0; c < 3; ++c) {
     for (std::size_t k = 0; k < members; ++k) {
       s.origin[c][k] = s.seen[c][k] - (from_tool ? tool_offset_error[c] : 0.0);
+    }
+  }
+  if (drift.acts()) move(first, members, s);
+}
+
+void InstrumentObservations::Implementation::move(std::size_t first, std::size_t members, InstrumentScratch& s) const {
+  for (std::size_t k = 0; k < members; ++k) {
+    const std::size_t reading = first + s.at[k];
+    const Eigen::Vector3d origin = drift.seen(reading, {s.origin[0][k], s.origin[1][k], s.origin[2][k]});
+    for (int c = 0; c < 3; ++c) s.origin[c][k] = origin[c];
+    Eigen::Matrix3d rotation;
+    for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = s.rotation[i][k];
+    rotation = drift.turn(reading).transpose() * rotation;
+    for (int i = 0; i < 9; ++i) s.rotation[i][k] = rotation(i / 3, i % 3);
+  }
+}
+
+void InstrumentObservations::Implementation::take_drift(std::size_t first, std::size_t members, std::size_t count,
+                                                        std::span<const std::size_t> setup_parameters, double* columns,
+                                                        std::size_t stride, InstrumentScratch& s) const {
+  const std::size_t own_unknowns = quantity_of.size();
+  for (std::size_t k = 0; k < members; ++k) {
+    const std::size_t reading = first + s.at[k];
+    const Eigen::Vector3d origin(s.origin[0][k], s.origin[1][k], s.origin[2][k]);
+    const Eigen::Matrix3d turn = drift.turn(reading);
+    for (std::size_t row = 0; row < rows(); ++row) {
+      const auto& f = s.force[row];
+      const Eigen::Vector3d force(f[0][k], f[1][k], f[2][k]), moment(f[3][k], f[4][k], f[5][k]);
+      const Eigen::Matrix<double, 6, 1> slopes = drift.slopes(reading, origin, force, moment);
+      for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
+        if (setup_parameters[i] < own_unknowns) continue;
+        const std::size_t unknown = setup_parameters[i] - own_unknowns;
+        columns[i * stride + row * count + s.at[k]] =
+            drift.weight(unknown, reading) * slopes[drift.component_of(unknown)];
+      }
+      const Eigen::Vector3d back = turn * force, moment_back = turn * moment;
+      for (int c = 0; c < 3; ++c) {
+        s.force[row][c][k] = back[c];
+        s.force[row][3 + c][k] = moment_back[c];
+      }
     }
   }
 }
@@ -185,6 +232,7 @@ void InstrumentObservations::Implementation::model_item(std::size_t begin, std::
   }
   if (jacobian == nullptr) return;
   for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
+    if (setup_parameters[i] >= quantity_of.size()) continue;  // of the drift
     const std::size_t quantity = quantity_of[setup_parameters[i]];
     const std::size_t q = static_cast<std::size_t>(std::find(used.begin(), used.end(), quantity) - used.begin());
     for (std::size_t row = 0; row < rows(); ++row) {
@@ -208,14 +256,18 @@ void InstrumentObservations::Implementation::evaluate_pair(const BodyPair& pair,
                                                            std::size_t stride) const {
   InstrumentScratch& s = instrument_scratch();
   load(pair, first, members, s);
-  see(pair, members, s);
+  see(pair, first, members, s);
   for (std::size_t begin = 0; begin < members;) {
     std::size_t end = begin + 1;
     while (end < members && readings.item[first + s.at[end]] == readings.item[first + s.at[begin]]) ++end;
     model_item(begin, end, first, count, setup_parameters, machine_parameters.size(), residuals, jacobian, stride);
     begin = end;
   }
-  if (jacobian == nullptr || machine_parameters.empty()) return;
+  if (jacobian == nullptr) return;
+  if (drift.acts()) {
+    take_drift(first, members, count, setup_parameters, jacobian + machine_parameters.size() * stride, stride, s);
+  }
+  if (machine_parameters.empty()) return;
 
   RowArrays row_arrays[kMaxRows];
   for (std::size_t row = 0; row < rows(); ++row) {
@@ -333,6 +385,15 @@ InstrumentObservations::InstrumentObservations(const Machine& machine, const Err
     own.quantity_of.push_back(q);
     own.unknown_values.push_back(quantity.value);
   }
+  if (own.readings.drift == nullptr) return;
+  std::vector<std::uint16_t> place;
+  for (const std::uint16_t item : own.readings.item) {
+    place.push_back(static_cast<std::uint16_t>(own.instrument->station_of(item)));
+  }
+  own.drift = ReadingDrift(own.readings.drift, own.readings.time_s, std::move(place));
+  for (SetupUnknown& unknown : own.readings.drift->unknowns()) own.unknowns.push_back(std::move(unknown));
+  const std::vector<double>& values = own.readings.drift->values;
+  own.unknown_values.insert(own.unknown_values.end(), values.begin(), values.end());
 }
 
 InstrumentObservations::~InstrumentObservations() = default;
@@ -364,8 +425,9 @@ void InstrumentObservations::set_parameters(std::span<const double> machine, std
   for (int k = 0; k < 3; ++k) own.tool_offset_error[k] = machine[own.tool_parameter + static_cast<std::size_t>(k)];
   for (std::size_t i = 0; i < setup.size(); ++i) {
     own.unknown_values[i] = setup[i];
-    own.values[own.quantity_of[i]] = setup[i];
+    if (i < own.quantity_of.size()) own.values[own.quantity_of[i]] = setup[i];
   }
+  own.drift.set(setup.subspan(own.quantity_of.size()));
 }
 
 void InstrumentObservations::evaluate(std::size_t first, std::size_t count,
@@ -392,13 +454,14 @@ bool InstrumentObservations::displacement_rows(std::size_t first, std::size_t co
     const std::size_t members = own.find_members(first, count, pair, s);
     if (members == 0) continue;
     own.load(own.pairs[pair], first, members, s);
-    own.see(own.pairs[pair], members, s);
+    own.see(own.pairs[pair], first, members, s);
     for (std::size_t begin = 0; begin < members;) {
       std::size_t end = begin + 1;
       while (end < members && own.readings.item[first + s.at[end]] == own.readings.item[first + s.at[begin]]) ++end;
       own.model_item(begin, end, first, count, {}, 0, residuals, &no_columns, 0);
       begin = end;
     }
+    if (own.drift.acts()) own.take_drift(first, members, count, {}, nullptr, 0, s);
     for (std::size_t direction = 0; direction < 3; ++direction) {
       for (std::size_t row = 0; row < own.rows(); ++row) {
         for (std::size_t k = 0; k < members; ++k) {

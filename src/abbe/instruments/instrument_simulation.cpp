@@ -11,6 +11,9 @@ SimulatedInstrument simulate_instrument(const Machine& machine, const ErrorSet& 
   check_readings(machine, *instrument, plan, false);
   const std::size_t rows = instrument->components().size(), count = plan.count();
   // Modelled values are measured minus deviation, whatever is put in as measured.
+  if (plan.drift && plan.time_s.empty()) {
+    for (std::size_t k = 0; k < count; ++k) plan.time_s.push_back(options.interval_s * static_cast<double>(k));
+  }
   InstrumentReadings blank = plan;
   blank.measured.assign(rows, std::vector<double>(count, 0.0));
   blank.uncertainty.assign(rows, std::vector<double>(count, 1.0));

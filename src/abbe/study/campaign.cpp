@@ -14,6 +14,7 @@
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/study/planned_readings.h"
+#include "abbe/study/setup_drifts.h"
 
 namespace abbe {
 namespace {
@@ -21,6 +22,7 @@ namespace {
 // Streams of their own, apart from those of the readings and of the other errors.
 constexpr std::uint64_t kTruthStream = 1'000'000'007;
 constexpr std::uint64_t kReversalStream = 1'000'000'009;
+constexpr std::uint64_t kDriftStream = 1'000'000'021;
 
 /// A dial along its face, a beam past its mirror: nothing can be read there.
 /// @param place  file or set-up to be named
@@ -81,15 +83,43 @@ void warn_of_starts(const Study& study, const ErrorSet* truth, const std::string
   }
 }
 
+/// The plans of a set-up. Poses are planned with what is known of the set-up, not with what it really is.
+std::vector<PlannedReadings> plans_of(const Study& study, std::size_t setup_index, const ChannelUse& channels) {
+  const Setup& setup = study.setups[setup_index];
+  std::vector<PlannedReadings> plans;
+  for (std::size_t p = 0; p < setup.plans.size(); ++p) {
+    plans.push_back(planned_readings(study.machine, setup, setup.plans[p], plan_seed(study, setup_index, p), channels));
+  }
+  return plans;
+}
+
+/// Lets a set-up drift over all of its plans, which then have one clock.
+void add_true_drift(const Study& study, std::size_t setup_index, std::vector<PlannedReadings>& plans,
+                    CampaignSetup& result) {
+  std::vector<double> all;
+  for (PlannedReadings& planned : plans) {
+    std::vector<double>& times = planned.readings.time_s;
+    const double interval = study.simulation->interval_s, after = all.empty() ? 0 : all.back() + interval;
+    for (std::size_t k = times.size(); k < planned.readings.count(); ++k) {
+      times.push_back(after + interval * static_cast<double>(k));
+    }
+    all.insert(all.end(), times.begin(), times.end());
+  }
+  RandomStream random(study.seed, kDriftStream + setup_index);
+  result.true_drift = true_drift(*study.setups[setup_index].drift, *result.truth, all, random);
+  for (PlannedReadings& planned : plans) planned.readings.drift = result.true_drift;
+}
+
 void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet& truth, const JobOptions& job,
                     const ChannelUse& channels, CampaignSetup& result) {
   const Setup& setup = study.setups[setup_index];
   RandomStream random(study.seed, kTruthStream + setup_index);
   result.truth = setup.device->truth(random);
-  for (std::size_t p = 0; p < setup.plans.size(); ++p) {
+  std::vector<PlannedReadings> plans = plans_of(study, setup_index, channels);
+  if (setup.drift && setup.drift->truth) add_true_drift(study, setup_index, plans, result);
+  for (std::size_t p = 0; p < plans.size(); ++p) {
     const std::uint64_t seed = plan_seed(study, setup_index, p);
-    // Poses are planned with what is known of the set-up, not with what it really is.
-    PlannedReadings planned = planned_readings(study.machine, setup, setup.plans[p], seed, channels);
+    PlannedReadings& planned = plans[p];
     InstrumentReadings& plan = planned.readings;
     if (approach_matters(study, truth)) plan.poses.approach = approach_in_order(plan.poses);
     require_planned_states(study.machine, truth, plan.poses, setup.name);
@@ -99,6 +129,7 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
     options.outlier_fraction = study.simulation->outliers.fraction;
     options.outlier_mm = study.simulation->outliers.size;
     options.readings_per_pose = planned.per_pose;
+    options.interval_s = study.simulation->interval_s;
     options.threads = study.threads;
     options.progress = stoppable_progress(job);
     const SimulatedInstrument simulated = result.truth->simulate(study.machine, truth, plan, options);
@@ -120,10 +151,11 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
       result.outliers.push_back(static_cast<std::uint32_t>(offset) + outlier);
     }
     result.hidden += simulated.hidden;
-    const bool same_clock = channels.from != nullptr;
+    const bool same_clock = channels.from != nullptr || result.true_drift != nullptr;
     result.readings.append(simulated.readings, same_clock);
     result.exact.append(result.truth->simulate(study.machine, truth, plan, options).readings, same_clock);
   }
+  result.readings.drift = result.exact.drift = nullptr;  // what is identified does not know it
 }
 
 InstrumentFile read_file(const Study& study, const Setup& setup, const std::shared_ptr<const Instrument>& device,
@@ -291,6 +323,7 @@ Campaign gather_readings(const Study& study, const JobOptions& options) {
     result.name = setup.name;
     result.instrument = setup.instrument;
     result.device = setup.device;
+    result.drift = setup.drift;
     const StateChannels channels = read_channels(study.machine, study.channels, setup.channels);
     std::vector<UncertainStart> starts;
     const ChannelUse use = channels.empty() ? ChannelUse{} : ChannelUse{&channels, &starts};
@@ -329,7 +362,9 @@ InstrumentReadings read_held_out(const Study& study, const Campaign& campaign) {
                      fmt::format("{} '{}' was not measured", word, named.back()),
                      fmt::format("{}s of set-up '{}'", word, setup.name));
   }
-  return file.readings;
+  InstrumentReadings readings = file.readings;
+  take_drift_of(campaign.setups.front(), data.file.string(), readings);
+  return readings;
 }
 
 void find_start_values(const Machine& machine, Campaign& campaign) {
@@ -343,6 +378,9 @@ void find_start_values(const Machine& machine, Campaign& campaign) {
     setup.unexplained = std::move(judged.unexplained);
     for (const UnexplainedReadings& place : setup.unexplained) tell(place.words());
     setup.start = std::move(started.instrument);
+    if (!setup.drift) continue;
+    setup.readings.drift = assumed_drift(*setup.drift, *setup.start, setup.readings, setup.name);
+    setup.exact.drift = setup.readings.drift;
   }
 }
 

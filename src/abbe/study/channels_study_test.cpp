@@ -307,7 +307,7 @@ TEST(ChannelsStudy, WhatIsMissingIsSaid) {
                         " covers 0 s to 82800 s"));
   // Times belong to one pass over the poses.
   std::ofstream(folder / "bare.csv") << "time_h,X_mm,Z_mm\n0,0,0\n0.1,500,0\n";
-  EXPECT_THAT(message("bare.csv\"\nrepeats = 2\nreflectors = [\"R1\"]\n#", "", ""),
+  EXPECT_THAT(message("bare.csv\"\nrepeats = 2\n#", "", ""),
               HasSubstr("bare.csv: time: the poses are gone through 2 times; expected repeats = 1"));
 }
 

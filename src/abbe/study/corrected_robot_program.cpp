@@ -291,7 +291,6 @@ class RobotCorrector {
 }  // namespace
 
 CorrectedRobotProgram correct_robot_program(const RobotProgramRequest& request) {
-  refuse_states(request.machine, request.errors.errors, "a correction of robot programs", UsableStates::of_commands);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   check_largest_turn(request.largest_turn);
   if (request.leave_out_factor != 0) {
@@ -307,7 +306,7 @@ CorrectedRobotProgram correct_robot_program(const RobotProgramRequest& request) 
   if (missing != kNoState) {
     throw InputError({.field = "state." + request.machine.states[missing].name},
                      "the errors depend on this measured state, which a robot program does not give",
-                     "errors with states that follow from the commands, such as torques of gravity");
+                     "--state " + state_column(request.machine.states[missing]) + "=VALUE");
   }
   RobotCorrector corrector(request);
   CorrectedRobotProgram result;

@@ -74,7 +74,7 @@ void add_places(const Instrument& start, std::size_t s, const Identification& id
     const InstrumentPlace& place = places[p];
     std::vector<Eigen::Index> entries;
     std::vector<std::size_t> estimated;
-    for (std::size_t u = 0; u < unknowns.size(); ++u) {
+    for (std::size_t u = 0; u < quantity_of.size(); ++u) {
       const std::size_t q = quantity_of[u];
       if (std::find(place.quantities.begin(), place.quantities.end(), q) == place.quantities.end()) continue;
       is_of_place[u] = 1;
@@ -88,7 +88,7 @@ void add_places(const Instrument& start, std::size_t s, const Identification& id
     found.places.push_back({place.name, place.body, place.position, expanded.head<3>(), place.rotation, place.direction,
                             expanded.tail<3>()});
   }
-  for (std::size_t u = 0; u < unknowns.size(); ++u) {
+  for (std::size_t u = 0; u < quantity_of.size(); ++u) {  // behind them: its drift
     if (is_of_place[u] != 0) continue;
     const SetupQuantity& quantity = quantities[quantity_of[u]];
     found.numbers.push_back(estimates.number(quantity.name, {s, u}, quantity.is_angle, unknowns[u]));

@@ -10,6 +10,8 @@
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/study/setup_drifts.h"
+#include "abbe/study/time_blocks.h"
 
 namespace abbe {
 namespace {
@@ -57,13 +59,17 @@ void place_nodes(Basis& basis) {
   basis.order = 0;
 }
 
-void mark_held_out(const Study& study, Problem& problem) {
+void mark_held_out(const Study& study, const Campaign& campaign, Problem& problem) {
   const double fraction = study.identification->held_out_fraction;
   if (fraction <= 0 || study.identification->held_out_file) return;
   for (std::size_t s = 0; s < problem.observations.size(); ++s) {
     SelectedObservations& selected = problem.observations[s];
     const std::size_t count = selected.observations->reading_count();
     selected.use.assign(count, 1);
+    if (is_time_series(study.machine, problem.errors, campaign.setups[s])) {
+      hold_out_blocks(campaign.setups[s].readings.time_s, fraction, RandomStream(study.seed, 7000 + s), selected.use);
+      continue;
+    }
     // All readings of one pose are held out together: another reflector at the same pose is no unseen pose.
     std::vector<double> previous;
     RandomStream random(study.seed, 7000 + s);
@@ -114,6 +120,7 @@ void add_priors(const Study& study, const Campaign& campaign, bool all_found, Pr
     for (const KnownUnknown& known : campaign.setups[s].known_unknowns()) {
       problem.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
     }
+    add_walk_priors(campaign.setups[s], s, problem);
   }
 }
 
@@ -197,7 +204,8 @@ StudyModel model_of(const Study& study, const Campaign& campaign, bool all_prior
         std::remove_if(parameters.begin(), parameters.end(), [&](std::size_t p) { return p >= first_tool; }),
         parameters.end());
   }
-  mark_held_out(study, model.problem);
+  mark_held_out(study, campaign, model.problem);
+  if (plan.estimate_block_noise) mark_noise_blocks(plan.noise_block_s, campaign, model.problem);
   add_priors(study, campaign, all_priors, model.problem);
   return model;
 }

@@ -95,6 +95,11 @@ std::string noise_words(const Setup& setup) {
                      noise);
 }
 
+const char* common_noise_of(const VarianceComponents& components) {
+  return components.estimated.by_block ? "Noise of a block of time (a displacement common to all readings in it)"
+                                       : "Pose noise (a displacement common to all readings at one pose)";
+}
+
 /// What was found about the variances of the readings, and what that means.
 void variance_assumptions(const StudyResult& result, std::vector<std::string>& list) {
   const VarianceComponents& components = result.weighed->components;
@@ -108,16 +113,14 @@ void variance_assumptions(const StudyResult& result, std::vector<std::string>& l
         components.variance.factor, components.variance_factor_uncertainty()));
   }
   if (components.pose_noise_at_zero) {
-    list.push_back(
-        fmt::format("Pose noise (a displacement common to all readings at one pose): none found, not above "
-                    "{:.3g} um (k = 2).",
-                    1e3 * components.pose_noise_uncertainty()));
+    list.push_back(fmt::format("{}: none found, not above {:.3g} um (k = 2).", common_noise_of(components),
+                               1e3 * components.pose_noise_uncertainty()));
   } else if (components.estimated.pose_noise) {
     list.push_back(fmt::format(
-        "Pose noise (a displacement common to all readings at one pose): {:.4g} um in every direction, standard "
-        "uncertainty {:.2g} um. It stands for errors of the machine that are not in the model and differ from pose to "
-        "pose; predicted errors of the machine do not include it.",
-        1e3 * components.pose_noise(), 1e3 * components.pose_noise_uncertainty()));
+        "{}: {:.4g} um in every direction, standard uncertainty {:.2g} um. It stands for errors of the machine that "
+        "are not in the model and differ from {}; predicted errors of the machine do not include it.",
+        common_noise_of(components), 1e3 * components.pose_noise(), 1e3 * components.pose_noise_uncertainty(),
+        components.estimated.by_block ? "one block of time to the next" : "pose to pose"));
   }
   if (result.unseen && result.unseen->readings && result.unseen->readings->readings > 0) {
     const ReadingCoverage& found = *result.unseen->readings;

@@ -30,7 +30,10 @@ ProbeBeam probe_beam(const Machine& machine, const Eigen::Vector3d& zero,
 }
 
 LeftOutPoses ScannedPoints::left_out() const {
-  return {.all = summary.readings, .not_covered = summary.not_covered, .what = "readings"};
+  return {.all = summary.readings,
+          .not_covered = summary.not_covered,
+          .what = "readings",
+          .extrapolated = at_state.outside};
 }
 
 ScannedPoints write_scanned_points(const ScannedPointsRequest& request, const JobOptions& options) {

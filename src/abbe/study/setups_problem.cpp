@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "abbe/study/setup_drifts.h"
+
 namespace abbe {
 
 Problem setups_problem(const Machine& machine, const ErrorSet& errors, std::span<const CampaignSetup> setups,
@@ -15,6 +17,7 @@ Problem setups_problem(const Machine& machine, const ErrorSet& errors, std::span
     for (const KnownUnknown& known : setups[s].known_unknowns()) {
       problem.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
     }
+    add_walk_priors(setups[s], s, problem);
   }
   return problem;
 }

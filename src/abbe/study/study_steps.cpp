@@ -10,10 +10,23 @@
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/study/coverage.h"
+#include "abbe/study/setup_drifts.h"
+#include "abbe/study/state_ranges.h"
 #include "abbe/verify/known_range.h"
 #include "abbe/verify/volumetric_figures.h"
 
 namespace abbe {
+namespace {
+
+/// The study without the terms that were not taken.
+Study with_chosen_terms(const Study& study, const StudyResult& result) {
+  Study chosen = study;
+  if (result.terms) chosen.identification = result.terms->plan;
+  return chosen;
+}
+
+}  // namespace
+
 IdentifyOptions identify_options(const Study& study) {
   const IdentificationPlan& plan = *study.identification;
   IdentifyOptions options;
@@ -37,6 +50,9 @@ void append_length(const Observations& observations, std::size_t reading, std::v
 void prepare_study(const Study& study, StudyResult& result) {
   find_start_values(study.machine, result.campaign);
   result.model = build_model(study, result.campaign);
+  if (!study.identification->select_terms || !result.model.impossible.empty()) return;
+  result.terms = choose_terms(study, result.campaign, result.model.problem, identify_options(study));
+  result.model = build_model(with_chosen_terms(study, result), result.campaign);
 }
 
 void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress,
@@ -56,7 +72,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     OrderSelectionOptions selection;
     selection.seed = study.seed;
     selection.identify = options;
-    result.order_selection = select_model(study, result.campaign, selection, result.model);
+    result.order_selection = select_model(with_chosen_terms(study, result), result.campaign, selection, result.model);
     if (!result.order_selection->done) {
       result.warnings.push_back(
           "orders: no model of the range could be identified with poses held out; the largest orders are used");
@@ -64,8 +80,12 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
   }
   options.solver.summation = summation;
   const VarianceComponentChoice variances{.variance_factor = plan.estimate_variance_factor,
-                                          .pose_noise = plan.estimate_pose_noise};
-  if (variances.any()) {
+                                          .pose_noise = plan.estimate_pose_noise || plan.estimate_block_noise,
+                                          .by_block = plan.estimate_block_noise};
+  result.walks = walks_to_estimate(result.campaign, problem);
+  if (!result.walks.empty()) {
+    result.identification = identify_with_walks(problem, result.walks, options);
+  } else if (variances.any()) {
     result.weighed = identify_with_variances(problem, variances, options);
     result.identification = std::move(result.weighed->identification);
   } else {
@@ -101,6 +121,14 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     result.warnings.push_back(
         "some errors depend on states; figures and maps are those at the references of the states: " + references +
         " (map poses of a file: at the states that it gives)");
+  }
+  for (const CoveredState& state : covered_states(study, result)) {
+    if (state.to - state.from > 1e-9 * (1 + std::abs(state.to))) continue;
+    result.warnings.push_back(fmt::format(
+        "{} is {:.6g} at all readings: errors with this state cannot be told from those without it, and "
+        "what is stated of them apart from each other is a convention; readings at another value would show "
+        "them",
+        state.column, state.to));
   }
   result.not_identified = find_not_identified(study, result);
   result.volumetric = study_volumetric_figures(study, result);

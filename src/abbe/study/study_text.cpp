@@ -8,6 +8,7 @@
 #include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/advice.h"
 #include "abbe/study/coverage.h"
+#include "abbe/study/drift_words.h"
 #include "abbe/study/found_values_words.h"
 #include "abbe/study/outlier_list.h"
 #include "abbe/study/residual_figures.h"
@@ -49,6 +50,10 @@ std::string unseen_text(const UnseenPoses& unseen, bool conditional) {
   return text;
 }
 
+const char* common_noise_words(const VarianceComponents& components) {
+  return components.estimated.by_block ? "noise common to a block of time" : "pose noise";
+}
+
 /// Variances of the readings that were estimated from their residuals.
 std::string variances_text(const VarianceComponents& components) {
   std::string text = "  variances of the readings, by restricted maximum likelihood:\n";
@@ -57,11 +62,12 @@ std::string variances_text(const VarianceComponents& components) {
                         components.variance.factor, components.variance_factor_uncertainty());
   }
   if (components.pose_noise_at_zero) {
-    text += fmt::format("    pose noise: none found; not above {:.3g} um (k = 2)\n",
+    text += fmt::format("    {}: none found; not above {:.3g} um (k = 2)\n", common_noise_words(components),
                         1e3 * components.pose_noise_uncertainty());
   } else if (components.estimated.pose_noise) {
-    text += fmt::format("    pose noise {:.4g} um in every direction, standard uncertainty {:.2g} um\n",
-                        1e3 * components.pose_noise(), 1e3 * components.pose_noise_uncertainty());
+    text += fmt::format("    {} {:.4g} um in every direction, standard uncertainty {:.2g} um\n",
+                        common_noise_words(components), 1e3 * components.pose_noise(),
+                        1e3 * components.pose_noise_uncertainty());
   }
   text += fmt::format("    with the uncertainties as stated, chi-square is {:.1f} with {:.0f} degrees of freedom\n",
                       components.stated_chi_square, components.stated_degrees_of_freedom);
@@ -102,6 +108,7 @@ std::string study_text(const Study& study, const StudyResult& result, const char
                         result.monte_carlo->samples, figures["smallest_uncertainty_ratio"].get<double>(),
                         figures["largest_uncertainty_ratio"].get<double>());
   }
+  if (result.terms) text += chosen_terms_text(*result.terms);
   if (result.order_selection && result.order_selection->done) {
     text += "  orders chosen at held-out poses:";
     for (std::size_t g = 0; g < result.order_selection->orders.size(); ++g) {
@@ -124,6 +131,7 @@ std::string study_text(const Study& study, const StudyResult& result, const char
   if (result.unseen && !result.unseen->open.empty())
     text += fmt::format("\nwarning: {}\n", open_directions_text(*result.unseen));
   text += found_values_text(found_values(study, result), shows_all);
+  text += drift_text(result);
   text += outliers_text(study, result, shows_all);
   if (!identified.gauge.constraints.empty()) {
     text += gauge_table_text(identified);

@@ -14,9 +14,11 @@
 #include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/advice.h"
 #include "abbe/study/coverage.h"
+#include "abbe/study/drift_words.h"
 #include "abbe/study/found_values_words.h"
 #include "abbe/study/outlier_list.h"
 #include "abbe/study/residual_figures.h"
+#include "abbe/study/state_ranges.h"
 #include "abbe/study/trust.h"
 
 namespace abbe {
@@ -115,9 +117,10 @@ nlohmann::ordered_json variances_json(const VarianceComponents& components) {
     json["variance_factor_standard_uncertainty"] = components.variance_factor_uncertainty();
   }
   if (components.estimated.pose_noise) {
-    json["pose_noise_um"] = 1e3 * components.pose_noise();
-    json["pose_noise_standard_uncertainty_um"] = 1e3 * components.pose_noise_uncertainty();
-    json["pose_noise_at_zero"] = components.pose_noise_at_zero;
+    const std::string name = components.estimated.by_block ? "block_noise" : "pose_noise";
+    json[name + "_um"] = 1e3 * components.pose_noise();
+    json[name + "_standard_uncertainty_um"] = 1e3 * components.pose_noise_uncertainty();
+    json[name + "_at_zero"] = components.pose_noise_at_zero;
   }
   json["method"] = "restricted maximum likelihood";
   json["identifications"] = components.iterations;
@@ -176,6 +179,11 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       json["residual"] = residual_json(residual);
       if (!identified.outliers.empty()) json["outlier_list"] = outliers_json(study, result);
       json["identified"] = found_values_json(found_values(study, result));
+      if (const nlohmann::ordered_json drift = drift_json(result); !drift["places"].empty()) json["drift"] = drift;
+      if (result.terms) json["terms_with_states"] = chosen_terms_json(*result.terms);
+      const std::vector<CoveredState> covered = covered_states(study, result);
+      for (const CoveredState& state : covered) json["covered_states"][state.column] = {state.from, state.to};
+      if (!covered.empty()) json["covered_time_h"] = covered_time_s(result) / 3600;
       json["gauge"] = gauge_table_json(identified);
       if (result.monte_carlo && result.monte_carlo->status == MonteCarloStatus::done) {
         const MonteCarloComparison comparison = compare_with_covariance(identified, *result.monte_carlo);

@@ -8,6 +8,7 @@
 #include "abbe/identify/trust/outlier_clusters.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/identify/trust/repeated_readings.h"
+#include "abbe/study/state_ranges.h"
 #include "abbe/study/study_result.h"
 #include "abbe/study/summary.h"
 
@@ -135,6 +136,9 @@ ErrorsFile identified_errors_file(const Study& study, const StudyResult& result)
   for (const Distrust& reason : result.distrusted) file.distrusted.push_back(reason.text);
   file.misfit_accepted = result.misfit_accepted && !result.distrusted.empty();
   file.warnings = study_warnings(study, result);
+  file.covered = covered_states(study, result);
+  file.covered_time_s = covered_time_s(result);
+  file.ageing = {study.identification->ageing_length, study.identification->ageing_angle};
   return file;
 }
 

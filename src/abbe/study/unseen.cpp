@@ -11,8 +11,10 @@
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/study/predicted_readings.h"
 #include "abbe/study/random_poses.h"
+#include "abbe/study/setup_drifts.h"
 #include "abbe/study/setups_problem.h"
 #include "abbe/study/study_steps.h"
+#include "abbe/study/time_blocks.h"
 #include "abbe/verify/compensated_poses.h"
 #include "abbe/verify/error_map.h"
 #include "abbe/verify/parts/determined_part.h"
@@ -52,8 +54,10 @@ void add_coverage(const StudyResult& result, std::size_t s, Observations& observ
 /// Distances of the nominal machine from readings, the numbers of the set-up fitted to these readings.
 std::vector<double> refitted_nominal_errors(const Machine& machine, const Instrument& device,
                                             const InstrumentReadings& readings) {
+  InstrumentReadings standing = readings;
+  standing.drift = nullptr;
   const std::unique_ptr<Observations> observations =
-      device.started(machine, readings).instrument->observations(machine, ErrorSet{}, readings);
+      device.started(machine, standing).instrument->observations(machine, ErrorSet{}, standing);
   std::vector<double> errors;
   for (std::size_t k = 0; k < readings.count(); ++k) {
     if (const auto length = observations->length_of_deviation(k)) errors.push_back(*length);
@@ -121,7 +125,9 @@ InstrumentReadings unseen_points(const Study& study, const StudyResult& result, 
   options.noise_factor = 0;
   options.line_of_sight = false;
   options.threads = study.threads;
-  return truth->simulate(study.machine, *result.campaign.truth, plan, options).readings;
+  InstrumentReadings readings = truth->simulate(study.machine, *result.campaign.truth, plan, options).readings;
+  stand_at_start_of_drift(result.campaign.setups[s], readings);
+  return readings;
 }
 
 InstrumentReadings held_out_readings(const Study& study, const StudyResult& result, std::size_t s) {
@@ -257,6 +263,10 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
   unseen.quantity = !unseen.against_truth ? UnseenQuantity::held_out_residual
                     : points_only         ? UnseenQuantity::error_at_reflectors
                                           : UnseenQuantity::volumetric_error;
+  const bool in_blocks = !study.identification->held_out_file &&
+                         std::any_of(setups.begin(), setups.end(), [&](const CampaignSetup& setup) {
+                           return is_time_series(study.machine, result.identification.errors, setup);
+                         });
   unseen.before_statistics = sample_statistics(unseen.before);
   unseen.after_statistics = sample_statistics(unseen.after);
   unseen.uncertainty_statistics = sample_statistics(unseen.expanded_uncertainty);
@@ -264,7 +274,8 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
       unseen.against_truth
           ? fmt::format("{} random poses that were not measured (seed {}), against the simulated truth",
                         unseen.after.size(), unseen_seed(study.seed))
-          : fmt::format("{} readings held out of the fit", unseen.after.size());
+          : fmt::format("{} readings held out of the fit{}", unseen.after.size(),
+                        in_blocks ? ", in blocks without a break in time" : "");
   return unseen;
 }
 

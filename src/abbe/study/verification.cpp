@@ -139,7 +139,8 @@ LeftOutPoses Verification::left_out() const {
           .not_covered = poses.not_covered,
           .outside_travel = poses.outside_travel,
           .not_reached = poses.not_reached,
-          .what = "random poses"};
+          .what = "random poses",
+          .extrapolated = partial.at_state.outside};
 }
 
 bool Verification::says_no() const {

@@ -15,7 +15,24 @@ namespace abbe {
 inline constexpr const char* kTruthOfSimulation = "truth of a simulation";
 
 /// Columns of states and their values, in the order of the machine: {"ambient_degC", 26.5}.
-using StateValues = std::vector<std::pair<std::string, double>>;
+struct StateValues : std::vector<std::pair<std::string, double>> {
+  using std::vector<std::pair<std::string, double>>::vector;
+  /// Values beyond what the readings covered, a sentence each: there the errors are extrapolated.
+  std::vector<std::string> outside;
+};
+
+/// Values of a state over which errors were measured.
+struct CoveredState {
+  std::string column;       ///< "ambient_degC"
+  double from = 0, to = 0;  ///< unit of the state
+};
+
+/// How errors wander after their measurement: every coefficient without a state by itself, as a random walk.
+struct ErrorAgeing {
+  double length = 0;  ///< mm/sqrt(s)
+  double angle = 0;   ///< rad/sqrt(s)
+  bool any() const { return length > 0 || angle > 0; }
+};
 
 /// Contents of a `*.errors.toml` file: errors, their covariance and where they come from.
 struct ErrorsFile {
@@ -28,6 +45,9 @@ struct ErrorsFile {
   bool misfit_accepted = false;           ///< somebody who knew these reasons wanted to use the errors nevertheless
   std::vector<std::string> warnings{};    ///< what else the identification had to say
   StateValues at_state{};                 ///< at which the errors are taken; empty: as the file has them
+  std::vector<CoveredState> covered{};    ///< states over which the readings were taken; empty: not stated
+  double covered_time_s = 0;              ///< from the first to the last reading; 0: not stated
+  ErrorAgeing ageing{};
 };
 
 /// Refuses to correct with errors that are not to be trusted, unless their user knows it.

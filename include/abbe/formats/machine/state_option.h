@@ -28,6 +28,9 @@ ErrorsFile at_given_states(const Machine& machine, ErrorsFile file, std::span<co
 
 /// read_errors() with --state: for a job that cannot take states into account, and can be done at values of theirs.
 /// @param states  texts of --state. @throws InputError as both
+/// Adds to the covariance what the errors have wandered since their measurement, as their file says (ErrorAgeing).
+void add_ageing(const Machine& machine, double days, ErrorsFile& file);
+
 ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
                           const std::vector<std::string>& states);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -45,7 +46,8 @@ struct Simulation {
   std::optional<ErrorSet> errors;                    ///< what the file holds, where somebody has it already
   std::optional<ErrorGenerator> generator;
   SimulatedOutliers outliers;
-  bool noise = true;  ///< false: exact readings; the set-ups' noise then only weights them
+  double interval_s = 2;  ///< time between readings, where poses have no times
+  bool noise = true;      ///< false: exact readings; the set-ups' noise then only weights them
 };
 
 enum class PlanKind {
@@ -85,6 +87,26 @@ struct SetupData {
   std::shared_ptr<const InstrumentReadings> readings{};  ///< instead of the file, where somebody has them already
 };
 
+/// How a set-up really drifts in a simulation.
+struct TrueDrift {
+  std::array<std::vector<double>, 6> polynomial;  ///< of x, y, z, rx, ry, rz: coefficients as in DriftingPlace, mm, rad
+  double walk_length = 0, walk_angle = 0;         ///< mm/sqrt(s), rad/sqrt(s)
+};
+
+/// A set-up that moves slowly against the body on which it stands.
+struct DriftPlan {
+  std::vector<int> components{0, 1, 2};  ///< as in DriftingPlace
+  int degree = 0;                        ///< of the polynomial in time
+  bool walks = false;                    ///< a random walk is added
+  bool estimate_walk = false;            ///< its intensities are found from the readings
+  double walk_length = 0;                ///< mm/sqrt(s), of shifts; where they are estimated: the start
+  double walk_angle = 0;                 ///< rad/sqrt(s), of turns
+  std::size_t knots = 0;                 ///< most values of the walk
+  std::optional<Eigen::Vector3d> about;  ///< mm, point about which it turns; else its place
+  std::optional<TrueDrift> truth;        ///< simulation
+  bool is_identified() const { return degree > 0 || walks; }
+};
+
 /// One instrument at one place in one period of time.
 struct Setup {
   std::string name;
@@ -94,6 +116,7 @@ struct Setup {
   std::vector<MeasurementPlan> plans;        ///< simulation
   std::vector<SetupData> data;               ///< measurement; exactly one of plans and data is given
   ChannelPlan channels{};                    ///< states by the times of readings, beside those of the study
+  std::optional<DriftPlan> drift{};          ///< absent: it stands still
 };
 
 /// One error motion to be identified.
@@ -104,12 +127,14 @@ struct IdentifiedMotion {
   Basis basis;
   int smallest_order = 0;        ///< equal to basis.order unless the order is to be selected
   std::size_t state = kNoState;  ///< index into Machine::states
+  bool optional = false;         ///< with a state: only taken where held-out blocks of time speak for it
 };
 
 struct IdentifiedLocation {
   std::size_t axis = 0;
   Component component = Component::A;
   std::size_t state = kNoState;  ///< index into Machine::states
+  bool optional = false;         ///< as that of an error motion
 };
 
 /// Prior knowledge of parameters: value with standard uncertainty.
@@ -129,6 +154,8 @@ struct IdentificationPlan {
   bool tool_offset = false;
   bool estimate_variance_factor = false;  ///< of the stated covariance of the readings, from their residuals
   bool estimate_pose_noise = false;       ///< of a displacement common to all readings at one pose
+  bool estimate_block_noise = false;      ///< of a displacement common to all readings in a block of time
+  double noise_block_s = 0;               ///< s, length of these blocks
   std::optional<std::filesystem::path> initial_errors;  ///< start values; else zero
   std::vector<ParameterPrior> priors;
   Strategy strategy = Strategy::joint;
@@ -141,8 +168,13 @@ struct IdentificationPlan {
   /// An error motion is stated up to the end of its range where the gap to the outermost reading is at most this much
   /// of the range of the readings.
   double coverage_margin_percent = 2;
-  bool select_order = false;  ///< some motion has smallest_order < basis.order
-  int monte_carlo = 0;        ///< simulated identifications; 0: none
+  bool select_order = false;     ///< some motion without a state has smallest_order < basis.order
+  bool select_terms = false;     ///< some term with a state is optional, or its order is to be selected
+  std::size_t time_blocks = 20;  ///< held out one after the other for that choice
+  double ageing_length = 0;      ///< mm/sqrt(s), how errors wander after their measurement; for the errors file
+  double ageing_angle = 0;       ///< rad/sqrt(s)
+  double time_gap_s = 0;         ///< readings nearer than this to a block take no part in the fit without it
+  int monte_carlo = 0;           ///< simulated identifications; 0: none
 };
 
 /// Where the volumetric error is predicted.

@@ -2,6 +2,7 @@
 
 // For formats and study: the parts of a study file.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ ColumnMapping read_column_mapping(TomlTable& table);
 
 /// Keys `channels`, `channel` and `lag_start` of a study or a set-up.
 ChannelPlan read_channel_plan(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
+
+/// Table `drift` of a set-up.
+std::optional<DriftPlan> read_drift(TomlTable& setup, bool simulated);
 
 PlanningStudy read_planning(TomlTable& table, const Machine& machine, const std::filesystem::path& folder);
 IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);

@@ -12,6 +12,7 @@
 #include "abbe/errors/chain_plan.h"
 #include "abbe/errors/poses.h"
 #include "abbe/geometry/rigid_transform.h"
+#include "abbe/instruments/setup_drift.h"
 
 namespace abbe {
 
@@ -105,6 +106,7 @@ struct TrackerReadings {
   /// standard: [0..2] are the standard uncertainties of the measured components (mm or rad; azimuth as the angle
   /// itself, not across the beam). covariance: xx, yy, zz, xy, xz, yz of the measured components. Else empty.
   std::array<std::vector<double>, 6> uncertainty;
+  std::shared_ptr<const SetupDrift> drift{};  ///< of the stations; null: they stand still
 
   std::size_t count() const { return station.size(); }
   void reserve(std::size_t axes, std::size_t readings);

@@ -25,14 +25,15 @@ struct TrackerSimulationOptions {
   std::vector<Sight> sights;  ///< empty: every station with every reflector on another body
   SightChoice choice = SightChoice::every;
   std::uint64_t seed = 1;
-  double noise_factor = 1;       ///< times the stations' noise; 0: none
-  double outlier_fraction = 0;   ///< of the readings
-  double outlier_mm = 1;         ///< an outlier is shifted by 0.5 to 1.5 times this, any direction
-  double swapped_fraction = 0;   ///< readings taken on another reflector than stated
-  bool line_of_sight = true;     ///< leave out what station limits and reflector cones do not allow
-  double interval_s = 2;         ///< time between readings
-  std::vector<double> time_s{};  ///< [poses] instead, where poses have times
-  int threads = 0;               ///< 0: all
+  double noise_factor = 1;                    ///< times the stations' noise; 0: none
+  double outlier_fraction = 0;                ///< of the readings
+  double outlier_mm = 1;                      ///< an outlier is shifted by 0.5 to 1.5 times this, any direction
+  double swapped_fraction = 0;                ///< readings taken on another reflector than stated
+  bool line_of_sight = true;                  ///< leave out what station limits and reflector cones do not allow
+  double interval_s = 2;                      ///< time between readings
+  std::vector<double> time_s{};               ///< [poses] instead, where poses have times
+  std::shared_ptr<const SetupDrift> drift{};  ///< of the stations, with its true values; `time_s` is then needed
+  int threads = 0;                            ///< 0: all
   std::function<void(std::size_t done, std::size_t total)> progress;  ///< in poses; called from one thread at a time
 };
 

@@ -15,7 +15,9 @@
 #include "abbe/formats/machine/error_fields.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
 #include "abbe/formats/text/toml_table.h"
+#include "abbe/machine/state.h"
 
 namespace abbe {
 namespace {
@@ -194,6 +196,50 @@ std::string motion_text(const Machine& machine, const ErrorMotion& motion) {
 
 }  // namespace
 
+namespace {
+
+constexpr double kSecondsOfHour = 3600, kSecondsOfDay = 86400;
+
+/// Table `covered`: the states over which the readings were taken, and the time.
+void read_covered(TomlTable& table, const Machine& machine, ErrorsFile& contents) {
+  contents.covered_time_s = table.size_or("time_span", Quantity::time, 0);
+  for (const MachineState& state : machine.states) {
+    const std::string column = state_column(state);
+    if (!is_input(state.kind) || !table.has(column)) continue;
+    const std::vector<double> range = table.numbers(column, Quantity::dimensionless, 2);
+    if (range[1] < range[0]) table.fail(column, "is not a range", "[smallest, largest]");
+    contents.covered.push_back({column, range[0], range[1]});
+  }
+  table.finish();
+}
+
+/// Table `ageing`.
+void read_ageing(TomlTable& table, ErrorsFile& contents) {
+  const double per_root = 1 / std::sqrt(kSecondsOfDay);
+  contents.ageing.length = 1e-3 * per_root * table.size_or("um_per_sqrt_day", Quantity::dimensionless, 0);
+  contents.ageing.angle = 1e-6 * per_root * table.size_or("urad_per_sqrt_day", Quantity::dimensionless, 0);
+  table.finish();
+}
+
+std::string covered_text(const ErrorsFile& contents) {
+  std::string text;
+  if (!contents.covered.empty()) text += "\n[covered]  # of what the readings cover\n";
+  if (!contents.covered.empty() && contents.covered_time_s > 0) {
+    text += fmt::format("time_span_h = {}\n", shortest_text(contents.covered_time_s / kSecondsOfHour));
+  }
+  for (const CoveredState& state : contents.covered) {
+    text += fmt::format("{} = [{}, {}]\n", state.column, shortest_text(state.from), shortest_text(state.to));
+  }
+  if (!contents.ageing.any()) return text;
+  const double root = std::sqrt(kSecondsOfDay);
+  text += fmt::format("\n[ageing]\num_per_sqrt_day = {}\nurad_per_sqrt_day = {}\n",
+                      shortest_text(1e3 * root * contents.ageing.length),
+                      shortest_text(1e6 * root * contents.ageing.angle));
+  return text;
+}
+
+}  // namespace
+
 ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& path, const Machine& machine,
                         StatesOfErrors states) {
   TomlTable root = TomlTable::parse(text, path.string());
@@ -263,6 +309,8 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
   if (auto table = root.optional_table("provenance")) {
     for (const std::string& key : table->keys()) contents.provenance.emplace_back(key, table->free_text(key));
   }
+  if (auto table = root.optional_table("covered")) read_covered(*table, machine, contents);
+  if (auto table = root.optional_table("ageing")) read_ageing(*table, contents);
   contents.distrusted = root.texts_or_none("distrusted");
   contents.misfit_accepted = root.boolean_or("misfit_accepted", false);
   contents.warnings = root.texts_or_none("warnings");
@@ -311,6 +359,7 @@ std::string errors_text(const Machine& machine, const ErrorsFile& contents, cons
   for (const auto& [key, value] : contents.provenance) {
     text += fmt::format("{} = {}\n", toml_string(key), toml_string(value));
   }
+  text += covered_text(contents);
   if (!(errors.composition == Composition{})) {
     const char* const orders[] = {"iso", "after-motion", "before-motion"};
     text += fmt::format("\n[composition]\norder = \"{}\"\nfirst_order = {}\n",

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/errors/error_states.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/nearest_word.h"
@@ -18,6 +19,8 @@
 namespace abbe {
 namespace {
 
+constexpr std::string_view kAgeOption = "days_since_measurement";
+
 /// "ambient_degC", ... of the states that have to be given.
 std::vector<std::string> given_columns(const Machine& machine) {
   std::vector<std::string> columns;
@@ -25,6 +28,36 @@ std::vector<std::string> given_columns(const Machine& machine) {
     if (is_input(state.kind)) columns.push_back(state_column(state));
   }
   return columns;
+}
+
+/// Says where a value lies beyond those at which the errors were measured.
+void note_outside(ErrorsFile& file, const std::string& column, double value) {
+  for (const CoveredState& covered : file.covered) {
+    if (covered.column != column || (value >= covered.from && value <= covered.to)) continue;
+    file.at_state.outside.push_back(
+        fmt::format("{} = {} lies outside the {} to {} that the readings cover: the errors are extrapolated", column,
+                    shortest_text(value), shortest_text(covered.from), shortest_text(covered.to)));
+  }
+}
+
+/// Option `days_since_measurement=30`, taken out of the others; nothing where it is not given.
+std::optional<double> take_age(const std::string& option, std::vector<std::string>& texts) {
+  std::optional<double> days;
+  for (std::size_t i = 0; i < texts.size();) {
+    if (!texts[i].starts_with(kAgeOption) || !std::string_view(texts[i]).substr(kAgeOption.size()).starts_with("=")) {
+      ++i;
+      continue;
+    }
+    double value = 0;
+    const std::string_view number = std::string_view(texts[i]).substr(kAgeOption.size() + 1);
+    if (parse_number(number, 0, value) != NumberProblem::none || !(value >= 0) || value > kLargestInput || days) {
+      throw InputError({.field = option + " " + texts[i]}, days ? "was given before" : "not a number of days",
+                       "0 or more days, once");
+    }
+    days = value;
+    texts.erase(texts.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return days;
 }
 
 /// What is wrong with the name of a state.
@@ -91,6 +124,7 @@ ErrorsFile at_given_states(const Machine& machine, ErrorsFile file, std::span<co
     if (used[j] == 0 || !is_input(state.kind)) continue;
     if (j < values.size() && std::isfinite(values[j])) {
       file.at_state.emplace_back(state_column(state), values[j]);
+      note_outside(file, state_column(state), values[j]);
       continue;
     }
     missing_names += (missing_names.empty() ? "" : ", ") + state.name;
@@ -108,10 +142,47 @@ ErrorsFile at_given_states(const Machine& machine, ErrorsFile file, std::span<co
   return file;
 }
 
+void add_ageing(const Machine& machine, double days, ErrorsFile& file) {
+  const double seconds = 86400 * days;
+  const std::size_t count = file.errors.parameter_count();
+  if (file.covariance.size() == 0) file.covariance = stated_variances(file.errors);
+  if (file.covariance.size() == 0) {
+    file.covariance.setZero(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
+  }
+  const std::vector<bool> angles = parameters_are_angles(machine, file.errors);
+  std::size_t next = 0;
+  const auto wander = [&](bool wanders, double* uncertainty) {
+    const double intensity = angles[next] ? file.ageing.angle : file.ageing.length;
+    const auto at = static_cast<Eigen::Index>(next++);
+    if (!wanders) return;
+    file.covariance(at, at) += intensity * intensity * seconds;
+    if (uncertainty != nullptr) *uncertainty = std::sqrt(file.covariance(at, at));
+  };
+  for (ErrorMotion& motion : file.errors.motions) {
+    motion.standard_uncertainty.resize(motion.coefficients.size(), 0.0);
+    for (double& u : motion.standard_uncertainty) wander(motion.state == kNoState, &u);
+  }
+  for (LocationError& location : file.errors.locations) {
+    wander(location.state == kNoState, &location.standard_uncertainty);
+  }
+  for (Reversal& reversal : file.errors.reversals) wander(true, &reversal.standard_uncertainty);
+}
+
 ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
                           const std::vector<std::string>& states) {
-  const std::vector<double> values = state_options(machine, "--state", states);
-  return at_given_states(machine, read_errors(path, machine, StatesOfErrors::allowed), values, path.string());
+  std::vector<std::string> of_machine = states;
+  const std::optional<double> days = take_age("--state", of_machine);
+  const std::vector<double> values = state_options(machine, "--state", of_machine);
+  ErrorsFile file = read_errors(path, machine, StatesOfErrors::allowed);
+  const bool ages = days && !is_truth(file);  // the truth is what it is
+  if (ages && !file.ageing.any()) {
+    throw InputError({.file = path.string(), .field = "ageing"}, "it is not said how these errors wander with time",
+                     "a table [ageing] with um_per_sqrt_day and urad_per_sqrt_day");
+  }
+  if (ages) add_ageing(machine, *days, file);
+  file = at_given_states(machine, std::move(file), values, path.string());
+  if (ages) file.at_state.emplace_back(std::string(kAgeOption), *days);
+  return file;
 }
 
 std::string state_words(const StateValues& values) {

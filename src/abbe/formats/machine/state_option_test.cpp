@@ -124,7 +124,7 @@ TEST(StateOption, ErrorsAtAStateMoveTheToolAsTheErrorsDoThere) {
   const double along = 4 + 6.5 * (0.5 + 4.6), lean = 20 - 4 * 3;
   EXPECT_NEAR(1e3 * shift.x(), along + 1e-3 * lean * 100, 1e-4);
   // What it says of itself can be read again.
-  EXPECT_THAT(errors_text(machine, file), HasSubstr("state = \"ambient_degC = 26.5, column_degC = 24\""));
+  EXPECT_THAT(errors_text(machine, file), HasSubstr("\"state\" = \"ambient_degC = 26.5, column_degC = 24\""));
   EXPECT_EQ(parse_errors(errors_text(machine, file), "again.errors.toml", machine).errors.motions, file.errors.motions);
 }
 

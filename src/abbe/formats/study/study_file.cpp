@@ -42,6 +42,8 @@ Simulation read_simulation(TomlTable& table, const std::filesystem::path& folder
     table.fail("", "the true errors are missing", "errors = \"file.errors.toml\" or [simulate.generator]");
   }
   simulation.noise = table.boolean_or("noise", true);
+  simulation.interval_s = table.number_or("interval", Quantity::time, 2);
+  if (!(simulation.interval_s > 0)) table.fail_quantity("interval", Quantity::time, "is not above zero", "a time");
   if (auto outliers = table.optional_table("outliers")) {
     simulation.outliers.fraction = outliers->size_or("fraction", Quantity::dimensionless, 0);
     if (simulation.outliers.fraction > 0.5) outliers->fail("fraction", "is above one half", "a fraction from 0 to 0.5");
@@ -139,6 +141,25 @@ std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machin
   return ranges;
 }
 
+namespace {
+
+/// Intensities of walks are estimated by joint least squares, with the readings' uncertainties as stated.
+void refuse_walks_beside_others(const TomlTable& root, const Study& study) {
+  if (!study.identification) return;
+  const IdentificationPlan& plan = *study.identification;
+  const bool plain = plan.loss == LossKind::none && plan.strategy == Strategy::joint &&
+                     !plan.estimate_variance_factor && !plan.estimate_pose_noise && !plan.estimate_block_noise;
+  for (const Setup& setup : study.setups) {
+    if (plain || !setup.drift || !setup.drift->estimate_walk) continue;
+    root.fail("identify",
+              fmt::format("the random walk of {} is estimated beside other variances, a robust loss or in two steps",
+                          setup.name),
+              "random_walk = \"stated\"; or strategy, loss, variance_factor, pose_noise and block_noise as by default");
+  }
+}
+
+}  // namespace
+
 Study parse_study(const std::string& text, const std::filesystem::path& path, const Machine& machine,
                   ReadingsSource source) {
   TomlTable root = TomlTable::parse(text, path.string());
@@ -167,6 +188,7 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
   if (auto table = root.optional_table("map")) study.map = read_map(*table, folder, machine);
   if (auto table = root.optional_table("report")) study.report = read_report(*table, folder);
   root.finish();
+  refuse_walks_beside_others(root, study);
   if (study.identification && study.setups.empty()) root.fail("identify", "there are no readings", "a [[setup]]");
   if (study.setups.empty() && !study.map) root.fail("", "nothing to do", "[[setup]] and [identify], or [map]");
   return study;

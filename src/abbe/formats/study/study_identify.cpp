@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "abbe/formats/machine/error_fields.h"
 #include "abbe/formats/study/study_file.h"
@@ -49,6 +50,18 @@ std::size_t read_identified_state(TomlTable& table, const Machine& machine) {
              known.empty() ? "a table [state." + name + "] in the machine file" : known);
 }
 
+bool is_nested_basis(BasisKind kind) {
+  return kind == BasisKind::monomial || kind == BasisKind::legendre || kind == BasisKind::chebyshev ||
+         kind == BasisKind::fourier;
+}
+
+/// Key `optional` of terms with a state.
+bool read_optional(TomlTable& table, std::size_t state) {
+  const bool optional = table.boolean_or("optional", false);
+  if (optional && state == kNoState) table.fail("optional", "is given without a state", "terms with a `state`");
+  return optional;
+}
+
 std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& machine) {
   Basis basis = read_basis_kind(table);
   if (basis.kind == BasisKind::table_monotone) {
@@ -68,8 +81,9 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
     smallest_tried = basis.order;
   }
   const std::size_t state = read_identified_state(table, machine);
-  if (state != kNoState && smallest_tried < basis.order) {
-    table.fail("orders", "is given together with `state`", "order, as orders are selected for errors without states");
+  const bool optional = read_optional(table, state);
+  if (state != kNoState && smallest_tried < basis.order && !is_nested_basis(basis.kind)) {
+    table.fail("orders", "is given together with `state`", "order, or polynomials or a Fourier series");
   }
   const std::vector<std::string> patterns = table.texts("errors");
   if (patterns.empty()) table.fail("errors", "is empty", pattern_hint(machine));
@@ -82,7 +96,7 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
         table.fail("errors", "linear and rotary axes in one table: their positions have different units",
                    "one [[identify.motion]] for each kind of axis");
       }
-      IdentifiedMotion motion{axis, component, basis, smallest_tried, state};
+      IdentifiedMotion motion{axis, component, basis, smallest_tried, state, optional};
       // A table to be identified has no nodes yet, but a range like a spline, over which they will stand evenly.
       motion.basis.kind = is_table(basis.kind) ? BasisKind::bspline : basis.kind;
       read_basis_range(table, machine.axes[axis], motion.basis);
@@ -96,7 +110,7 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
 
 /// @param key    of the patterns
 /// @param state  of the location errors
-void read_locations(TomlTable& table, const Machine& machine, const char* key, std::size_t state,
+void read_locations(TomlTable& table, const Machine& machine, const char* key, std::size_t state, bool optional,
                     IdentificationPlan& plan) {
   for (const std::string& pattern : table.texts_or_none(key)) {
     bool found = false;
@@ -116,7 +130,7 @@ void read_locations(TomlTable& table, const Machine& machine, const char* key, s
             std::any_of(plan.locations.begin(), plan.locations.end(), [&](const IdentifiedLocation& other) {
               return other.axis == axis && other.component == component && other.state == state;
             });
-        if (!known) plan.locations.push_back({axis, component, state});
+        if (!known) plan.locations.push_back({axis, component, state, optional});
       }
     }
     if (!found) {
@@ -171,12 +185,49 @@ void read_prior(TomlTable& table, std::vector<ParameterPrior>& priors) {
   }
 }
 
+/// How terms with states are chosen.
+void read_time_blocks(TomlTable& table, IdentificationPlan& plan) {
+  const char* const expected = "optional = true or orders in a table with a state";
+  const char* const problem = "is given, and no term with a state is chosen";
+  if (!plan.select_terms && table.has("time_blocks")) table.fail("time_blocks", problem, expected);
+  if (!plan.select_terms && table.has("time_gap", Quantity::time)) {
+    table.fail_quantity("time_gap", Quantity::time, problem, expected);
+  }
+  plan.time_blocks = static_cast<std::size_t>(table.integer_or("time_blocks", 20, 4, 1000));
+  plan.time_gap_s = table.size_or("time_gap", Quantity::time, 0);
+}
+
+/// Table `ageing`: how the errors wander after their measurement.
+void read_ageing_plan(TomlTable& table, IdentificationPlan& plan) {
+  auto ageing = table.optional_table("ageing");
+  if (!ageing) return;
+  const double per_root = 1 / std::sqrt(86400.0);
+  plan.ageing_length = 1e-3 * per_root * ageing->size_or("um_per_sqrt_day", Quantity::dimensionless, 0);
+  plan.ageing_angle = 1e-6 * per_root * ageing->size_or("urad_per_sqrt_day", Quantity::dimensionless, 0);
+  ageing->finish();
+}
+
 /// Which variances of the readings are estimated from their residuals.
 void read_variances(TomlTable& table, IdentificationPlan& plan) {
   plan.estimate_variance_factor = table.word_or("variance_factor", 0, {"stated", "estimated"}) == 1;
   plan.estimate_pose_noise = table.word_or("pose_noise", 0, {"none", "estimated"}) == 1;
-  const char* field = plan.estimate_variance_factor ? "variance_factor" : "pose_noise";
-  if (!plan.estimate_variance_factor && !plan.estimate_pose_noise) return;
+  plan.estimate_block_noise = table.word_or("block_noise", 0, {"none", "estimated"}) == 1;
+  if (const auto length = table.optional_number("noise_block", Quantity::time)) {
+    plan.noise_block_s = *length;
+    if (!plan.estimate_block_noise) {
+      table.fail_quantity("noise_block", Quantity::time, "is given without a noise", "block_noise = \"estimated\"");
+    }
+    if (!(*length > 0)) table.fail_quantity("noise_block", Quantity::time, "is not above zero", "the time of a block");
+  } else if (plan.estimate_block_noise) {
+    table.fail("block_noise", "needs the time of a block", "noise_block_s, noise_block_min or noise_block_h");
+  }
+  if (plan.estimate_block_noise && plan.estimate_pose_noise) {
+    table.fail("block_noise", "is estimated beside pose_noise", "only one of them");
+  }
+  const char* field = plan.estimate_variance_factor ? "variance_factor"
+                      : plan.estimate_pose_noise    ? "pose_noise"
+                                                    : "block_noise";
+  if (!plan.estimate_variance_factor && !plan.estimate_pose_noise && !plan.estimate_block_noise) return;
   if (plan.loss != LossKind::none) {
     table.fail(field, "is estimated from sums of squares, which a robust loss does not have", "loss = \"none\"");
   }
@@ -220,17 +271,22 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
                                 error_motion_name(machine, identified.axis, identified.component)),
                     "each error motion once per basis");
       }
-      plan.select_order = plan.select_order || identified.smallest_order < identified.basis.order;
+      const bool several = identified.smallest_order < identified.basis.order;
+      plan.select_order = plan.select_order || (several && identified.state == kNoState);
+      plan.select_terms = plan.select_terms || identified.optional || (several && identified.state != kNoState);
       plan.motions.push_back(std::move(identified));
     }
   }
-  read_locations(table, machine, "locations", kNoState, plan);
+  read_locations(table, machine, "locations", kNoState, false, plan);
   for (TomlTable& location : table.tables("location")) {
     const std::size_t state = read_identified_state(location, machine);
     if (state == kNoState) location.fail("state", "is missing", "a state; location errors without one in `locations`");
-    read_locations(location, machine, "errors", state, plan);
+    read_locations(location, machine, "errors", state, read_optional(location, state), plan);
     location.finish();
   }
+  for (const IdentifiedLocation& one : plan.locations) plan.select_terms = plan.select_terms || one.optional;
+  read_time_blocks(table, plan);
+  read_ageing_plan(table, plan);
   read_reversals(table, machine, plan);
   plan.tool_offset = table.boolean_or("tool_offset", false);
   if (table.has("initial")) plan.initial_errors = folder / table.text("initial");
@@ -240,6 +296,11 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
   plan.loss = static_cast<LossKind>(table.word_or("loss", 0, {"none", "huber", "cauchy", "tukey"}));
   plan.loss_scale = table.size_or("loss_scale", Quantity::dimensionless, 0);
   read_variances(table, plan);
+  if (plan.select_terms && (plan.loss != LossKind::none || plan.strategy != Strategy::joint)) {
+    table.fail(plan.loss != LossKind::none ? "loss" : "strategy",
+               "is given together with terms that are chosen, which are compared by joint least squares",
+               "loss = \"none\" and strategy = \"joint\"");
+  }
   plan.max_iterations = static_cast<int>(table.integer_or("max_iterations", 50, 1, 100000));
   plan.tolerance = table.size_or("tolerance", Quantity::dimensionless, 1e-10);
   plan.held_out_fraction = table.size_or("held_out_fraction", Quantity::dimensionless, 0.1);

@@ -63,6 +63,7 @@ Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Ma
     setup.data.push_back(read_data(data, folder));
   }
   setup.channels = read_channel_plan(table, folder, machine);
+  setup.drift = read_drift(table, simulated);
   if (setup.plans.empty() && setup.data.empty() && !later) {
     table.fail("", "the readings are missing", simulated ? "[[setup.plan]]" : "[[setup.data]] with a file");
   }

@@ -9,6 +9,7 @@
 #include "abbe/formats/import/import_mapping.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/channel_file.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/study/study_file.h"
 
@@ -31,7 +32,7 @@ std::vector<std::string> blocks(const std::string& kind, const char* page = "for
 TEST(DocumentedExamples, AreAccepted) {
   const std::vector<std::string> toml = blocks("toml"), csv = blocks("csv");
   ASSERT_EQ(toml.size(), 6U);
-  ASSERT_EQ(csv.size(), 2U);
+  ASSERT_EQ(csv.size(), 3U);
   const Machine machine = parse_machine(toml[0], "machine");
   EXPECT_EQ(machine.chain(), "w C' X' b Z t");
   const std::string column = "name = \"column\"\nchain = \"w X' b Z A t\"\n" + toml[1] +
@@ -52,6 +53,12 @@ TEST(DocumentedExamples, AreAccepted) {
   EXPECT_EQ(contents.errors.motions[4].basis.nodes.size(), 2U);
 
   EXPECT_EQ(parse_measurements(csv[0], "csv", machine).readings.count(), 2U);
+  const Machine recorded = parse_machine(toml[0] + "[state.ambient]\nkind = \"measured\"\nunit = \"degC\"\n" +
+                                             "[state.spindle]\nkind = \"measured\"\nunit = \"degC\"\n",
+                                         "recorded");
+  StateChannels channels;
+  channels.add(csv[2], "csv", recorded, {});
+  EXPECT_EQ(channels.common_time(), std::pair(-90.0 * 60, -88.0 * 60));
   EXPECT_EQ(parse_measurements(csv[1], "csv", machine).readings.stated, StatedUncertainty::covariance);
 
   const std::vector<std::string> mapping = blocks("toml", "import.md");

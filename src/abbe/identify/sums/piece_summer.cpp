@@ -82,7 +82,9 @@ void PieceSummer::select(const SumRequest& request) {
     selected.use = setup.use;
     selected.observations = stated_.observations[o].observations;
     if (!setup.weighed) continue;
-    if (!weighed_[o]) weighed_[o] = std::make_shared<WeighedObservations>(selected.observations, selected.use);
+    if (!weighed_[o]) {
+      weighed_[o] = std::make_shared<WeighedObservations>(selected.observations, selected.use, selected.common);
+    }
     // Derivatives by the displacement of all readings: only where they are others than last time.
     if (!(weighed_[o]->weights() == setup.weights)) weighed_[o]->weigh_at(setup.weights);
     selected.observations = weighed_[o];

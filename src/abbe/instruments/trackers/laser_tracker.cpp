@@ -123,6 +123,7 @@ TrackerReadings LaserTracker::tracker_readings(const InstrumentReadings& reading
   result.poses = readings.poses;
   result.time_s = readings.time_s;
   result.point_name = readings.point_name;
+  result.drift = readings.drift;
   for (const std::uint16_t item : readings.item) {
     result.station.push_back(static_cast<std::uint16_t>(station_of(item)));
     result.reflector.push_back(static_cast<std::uint16_t>(target_of(item)));
@@ -141,6 +142,7 @@ InstrumentReadings LaserTracker::instrument_readings(const TrackerReadings& read
   result.poses = readings.poses;
   result.time_s = readings.time_s;
   result.point_name = readings.point_name;
+  result.drift = readings.drift;
   for (std::size_t k = 0; k < readings.count(); ++k) {
     result.item.push_back(static_cast<std::uint16_t>(item_of(readings.station[k], readings.reflector[k])));
   }
@@ -232,6 +234,7 @@ std::unique_ptr<Observations> LaserTracker::observations(const Machine& machine,
     values.push_back(quantity.value);
     is_turned = is_turned || (quantity.is_angle && quantity.value != 0);
   }
+  if (readings.drift) values.insert(values.end(), readings.drift->values.begin(), readings.drift->values.end());
   if (is_turned) result->set_parameters(errors.parameters(), values);
   return result;
 }
@@ -281,11 +284,13 @@ SimulatedInstrument LaserTracker::simulate(const Machine& machine, const ErrorSe
   } else {
     own.choice = SightChoice::cycle;
   }
+  own.drift = plan.drift;
   const TrackerSetup present = setup();
   SimulatedTracker simulated = simulate_tracker(machine, errors, present, poses, own);
   state_uncertainty(present, stated_, simulated.readings);
   SimulatedInstrument result;
   result.readings = instrument_readings(simulated.readings);
+  result.readings.drift = plan.drift;
   result.outliers = std::move(simulated.outliers);
   result.hidden = simulated.hidden;
   return result;

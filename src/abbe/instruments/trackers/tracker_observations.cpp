@@ -8,7 +8,9 @@
 #include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/instruments/trackers/tracker_drift.h"
 #include "abbe/instruments/trackers/tracker_residual.h"
+#include "abbe/instruments/trackers/tracker_scratch.h"
 #include "abbe/instruments/trackers/tracker_whitening.h"
 
 namespace abbe {
@@ -28,20 +30,6 @@ struct Members {
   std::size_t count = 0;
   bool whole_block = false;
   std::uint16_t at[Observations::kBlockSize];  ///< index in the block
-};
-
-/// Working memory of one thread, grown once and kept.
-struct TrackerScratch {
-  static constexpr std::size_t kBlock = Observations::kBlockSize;
-  std::vector<double> positions;  ///< [axes][kBlock]
-  std::vector<const double*> axis;
-  std::vector<double> states;  ///< [states that are given][kBlock]
-  std::vector<const double*> state;
-  std::vector<double> jacobian;     ///< compact columns of one pair of bodies
-  std::vector<double> by_position;  ///< [axes][3][members]
-  double start[3][kBlock], seen[3][kBlock], gathered[3][kBlock], trig[4][kBlock], weight[6][kBlock];
-  double residual[3][kBlock], force[3][3][kBlock], by_start[3][3][kBlock];
-  std::uint16_t station[kBlock], reflector[kBlock];
 };
 
 TrackerScratch& tracker_scratch() {
@@ -74,34 +62,31 @@ struct TrackerObservations::Implementation {
   Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();
   ReversalShift reversal;
   GivenStates given_states;
+  ReadingDrift drift;
 
   std::uint8_t pair_at(std::size_t reading) const {
     return pair_of[readings.station[reading] * given.reflectors.size() + readings.reflector[reading]];
   }
 
   void name_unknowns() {
-    static constexpr char kLetters[] = "xyz";
+    const auto add = [&](std::string name, bool is_angle, UnknownRole role, double value) {
+      unknowns.push_back({std::move(name), is_angle, is_angle ? 1e-3 : 1.0});
+      roles.push_back(role);
+      values.push_back(value);
+    };
     for (std::size_t s = 0; s < given.stations.size(); ++s) {
       const TrackerStation& station = given.stations[s];
       if (!station.estimate_pose) continue;
-      for (int k = 0; k < 3; ++k) {
-        unknowns.push_back({station.name + "." + kLetters[k], false, 1.0});
-        roles.push_back({UnknownKind::station_position, s, k});
-        values.push_back(station.body_from_tracker.translation[k]);
-      }
-      for (int k = 0; k < 3; ++k) {
-        unknowns.push_back({station.name + ".r" + kLetters[k], true, 1e-3});
-        roles.push_back({UnknownKind::station_rotation, s, k});
-        values.push_back(0.0);
-      }
+      const Eigen::Vector3d& place = station.body_from_tracker.translation;
+      for (int k = 0; k < 3; ++k)
+        add(station.name + "." + "xyz"[k], false, {UnknownKind::station_position, s, k}, place[k]);
+      for (int k = 0; k < 3; ++k) add(station.name + ".r" + "xyz"[k], true, {UnknownKind::station_rotation, s, k}, 0);
     }
     for (std::size_t r = 0; r < given.reflectors.size(); ++r) {
-      if (!given.reflectors[r].estimate_offset) continue;
-      for (int k = 0; k < 3; ++k) {
-        unknowns.push_back({given.reflectors[r].name + ".offset_" + kLetters[k], false, 1.0});
-        roles.push_back({UnknownKind::reflector_offset, r, k});
-        values.push_back(given.reflectors[r].offset[k]);
-      }
+      const Reflector& reflector = given.reflectors[r];
+      if (!reflector.estimate_offset) continue;
+      for (int k = 0; k < 3; ++k)
+        add(reflector.name + ".offset_" + "xyz"[k], false, {UnknownKind::reflector_offset, r, k}, reflector.offset[k]);
     }
   }
 
@@ -130,6 +115,7 @@ struct TrackerObservations::Implementation {
       starts[r] = offsets[r];
       if (given.reflectors[r].body == Body::tool) starts[r] += tool_offset_error;
     }
+    drift.set(setup.subspan(roles.size()));
   }
 
   void find_members(std::size_t first, std::size_t count, std::size_t pair, Members& members) const;
@@ -266,8 +252,10 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
   const std::size_t n = members.count;
   const PositionArrays positions{s.axis, n, s.state};
   const ConstPointArrays start{s.start[0], s.start[1], s.start[2]};
-  const ConstPointArrays seen{s.seen[0], s.seen[1], s.seen[2]};
+  const auto& of_plan = drift.acts() ? s.unmoved : s.seen;
+  const ConstPointArrays seen{of_plan[0], of_plan[1], of_plan[2]};
   pair.plan.transform(positions, start, {s.seen[0], s.seen[1], s.seen[2]});
+  if (drift.acts()) move_reflectors(drift, first, {members.at, n}, s.seen, s.unmoved);
   residuals_of_runs(members, jacobian != nullptr, s);
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t k = 0; k < n; ++k) residuals[row * count + members.at[k]] = s.residual[row][k];
@@ -282,9 +270,20 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
     if (s.jacobian.size() < columns * target_stride) s.jacobian.resize(columns * target_stride);
     target = s.jacobian.data();
   }
-  const bool by_start_wanted = std::any_of(setup_parameters.begin(), setup_parameters.end(), [&](std::size_t i) {
-    return roles[i].kind == UnknownKind::reflector_offset;
-  });
+  const auto is_of_reflector = [&](std::size_t i) {
+    return i < roles.size() && roles[i].kind == UnknownKind::reflector_offset;
+  };
+  double* const setup_target = target + machine_parameters.size() * target_stride;
+  // Of a station the columns are in its own frame, those of everything else in the frame of the body.
+  for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
+    if (setup_parameters[i] >= roles.size() || is_of_reflector(setup_parameters[i])) continue;
+    setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target_stride);
+  }
+  if (drift.acts()) {
+    take_tracker_drift(drift, first, {members.at, n}, s.seen,
+                       {setup_parameters, roles.size(), setup_target, target_stride}, s.force);
+  }
+  const bool by_start_wanted = std::any_of(setup_parameters.begin(), setup_parameters.end(), is_of_reflector);
   RowArrays rows[3];
   PointArrays by_start[3];
   for (int row = 0; row < 3; ++row) {
@@ -308,7 +307,8 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
     }
   }
   for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
-    setup_column(roles[setup_parameters[i]], n, s, target + (machine_parameters.size() + i) * target_stride);
+    if (!is_of_reflector(setup_parameters[i])) continue;
+    setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target_stride);
   }
   if (members.whole_block) return;
   for (std::size_t column = 0; column < columns; ++column) {
@@ -364,6 +364,12 @@ TrackerObservations::TrackerObservations(const Machine& machine, const ErrorSet&
   for (const Reflector& reflector : own.given.reflectors) own.offsets.push_back(reflector.offset);
   own.starts = own.offsets;
   own.name_unknowns();
+  if (own.readings.drift != nullptr) {
+    own.drift = ReadingDrift(own.readings.drift, own.readings.time_s, own.readings.station);
+    for (SetupUnknown& unknown : own.readings.drift->unknowns()) own.unknowns.push_back(std::move(unknown));
+    const std::vector<double>& values = own.readings.drift->values;
+    own.values.insert(own.values.end(), values.begin(), values.end());
+  }
   const std::vector<double> start_values = own.values;
   own.update_setup(start_values);
 }
@@ -437,7 +443,10 @@ bool TrackerObservations::displacement_rows(std::size_t first, std::size_t count
     own.load(members, first, s);
     own.pairs[pair].plan.transform({s.axis, members.count, s.state}, {s.start[0], s.start[1], s.start[2]},
                                    {s.seen[0], s.seen[1], s.seen[2]});
+    const std::span<const std::uint16_t> at(members.at, members.count);
+    if (own.drift.acts()) move_reflectors(own.drift, first, at, s.seen, s.unmoved);
     own.residuals_of_runs(members, true, s);
+    if (own.drift.acts()) take_tracker_drift(own.drift, first, at, s.seen, {}, s.force);
     for (std::size_t direction = 0; direction < 3; ++direction) {
       for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t k = 0; k < members.count; ++k) {
@@ -477,6 +486,7 @@ Eigen::Vector3d TrackerObservations::distance(std::size_t reading) const {
   const Eigen::Vector3d& start = own.starts[own.readings.reflector[reading]];
   own.pairs[own.pair_at(reading)].plan.transform({s.axis, 1, s.state}, {&start[0], &start[1], &start[2]},
                                                  {&seen[0], &seen[1], &seen[2]});
+  if (own.drift.acts()) seen = own.drift.seen(reading, seen);
   const StationPose& station = own.stations[own.readings.station[reading]];
   return own.readings.point(reading) - station.body_from_tracker.transpose() * (seen - station.origin);
 }

@@ -114,6 +114,11 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
   const ReversalShift reversal(errors);
   const GivenStates given(machine, errors);
   require_states(machine, errors, poses);
+  std::vector<ReadingDrift> drifts;  // of every station, at the times of the poses
+  for (std::size_t s = 0; options.drift && s < setup.stations.size(); ++s) {
+    const std::vector<std::uint16_t> place(poses.count(), static_cast<std::uint16_t>(s));
+    drifts.emplace_back(options.drift, options.time_s, place);
+  }
   const std::size_t blocks = (poses.count() + kPosesPerBlock - 1) / kPosesPerBlock;
   std::vector<std::vector<Reading>> made(blocks);
   std::vector<std::size_t> hidden(blocks, 0);
@@ -166,7 +171,9 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
         const Reflector& reflector = setup.reflectors[sights[taken].reflector];
         const SightChains::Pair& chain = chains.pairs[chains.pair_of[taken]];
         const Vector3d start = reflector_start(reflector, errors);
-        const Vector3d point = station.body_from_tracker.inverse() * transformed(chain.point, start);
+        Vector3d seen = transformed(chain.point, start);
+        if (options.drift) seen = drifts[sights[taken].station].seen(pose, seen);
+        const Vector3d point = station.body_from_tracker.inverse() * seen;
         if (options.line_of_sight) {
           const Vector3d back = transformed(chain.back, station.body_from_tracker.translation) - start;
           if (!visible(station, reflector, point, back)) {
