@@ -218,13 +218,15 @@ TEST(DriftStudy, TheIntensityOfAWalkIsEstimated) {
   Study study = study_of(folder, table_study(R"([setup.drift]
 components = ["x", "y", "z", "rx", "ry", "rz"]
 random_walk = "estimated"
+random_walk_um_per_sqrt_h = 8  # where the search starts
+random_walk_urad_per_sqrt_h = 30
 knots = 60
 [setup.drift.true]
 random_walk_um_per_sqrt_h = 12
 random_walk_urad_per_sqrt_h = 20
 )"));
   const double truth[] = {12e-3 * 12e-3 / 3600, 20e-6 * 20e-6 / 3600};
-  constexpr int kFewer = 50;
+  constexpr int kFewer = 40;
   double mean[2] = {0, 0}, squares[2] = {0, 0};
   for (int draw = 0; draw < kFewer; ++draw) {
     study.seed = 600 + static_cast<std::uint64_t>(draw);

@@ -232,9 +232,9 @@ std::string covered_text(const ErrorsFile& contents) {
   }
   if (!contents.ageing.any()) return text;
   const double root = std::sqrt(kSecondsOfDay);
-  text += fmt::format("\n[ageing]\num_per_sqrt_day = {}\nurad_per_sqrt_day = {}\n",
-                      shortest_text(1e3 * root * contents.ageing.length),
-                      shortest_text(1e6 * root * contents.ageing.angle));
+  // Without the last digit, which conversion to and from seconds does not keep.
+  text += fmt::format("\n[ageing]\num_per_sqrt_day = {:.15g}\nurad_per_sqrt_day = {:.15g}\n",
+                      1e3 * root * contents.ageing.length, 1e6 * root * contents.ageing.angle);
   return text;
 }
 
