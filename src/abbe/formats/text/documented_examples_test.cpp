@@ -65,7 +65,9 @@ TEST(DocumentedExamples, AreAccepted) {
   ASSERT_EQ(mapping.size(), 1U);
   EXPECT_EQ(parse_import_mapping(mapping[0], "m.import.toml").columns.size(), 2U);
 
-  const Study simulated = parse_study(toml[3], "a.study.toml", with_state);
+  const Machine with_lag = parse_machine(
+      machine_text(with_state) + "[state.column]\nkind = \"lag\"\nof = \"ambient\"\ntime_constant_s = 2400\n", "lag");
+  const Study simulated = parse_study(toml[3], "a.study.toml", with_lag);
   EXPECT_EQ(simulated.setups[0].plans.size(), 4U);
   EXPECT_EQ(simulated.identification->motions.size(), 13U);
   const Study measured = parse_study(toml[4], "b.study.toml", machine);
