@@ -81,6 +81,34 @@ TEST_F(CompensateFreezeTest, TakesErrorsThatDependOnStates) {
   EXPECT_NE(left_out.err.find("EXX*ambient"), std::string::npos) << left_out.err;
 }
 
+TEST_F(CompensateFreezeTest, SaysWhyManyStatesHaveNoUncertainty) {
+  const std::string mill = (folder.path() / "many.machine.toml").string();
+  const std::string warm = (folder.path() / "many.errors.toml").string();
+  std::string states, errors_text;
+  const auto text_with = [&](int count) {
+    states =
+        "name = \"mill\"\nchain = \"w X' b Z t\"\n[axis.X]\ntravel_mm = [0, 500]\n[axis.Z]\n"
+        "travel_mm = [-300, 0]\n";
+    errors_text.clear();
+    for (int i = 0; i < count; ++i) {
+      const std::string name = "t" + std::to_string(i);
+      states += "[state." + name + "]\nkind = \"measured\"\nunit = \"degC\"\n";
+      errors_text +=
+          "[[motion]]\nname = \"EXX\"\nstate = \"" + name +
+          "\"\nbasis = \"legendre\"\norder = 1\ncoefficients_um = [0, 1]\nstandard_uncertainty_um = [0, 0.1]\n";
+    }
+    std::ofstream(mill) << states;
+    std::ofstream(warm) << errors_text;
+    return abbe({"compensate", "freeze", "--machine", mill, "--errors", warm, "--dry-run"});
+  };
+  const CommandResult eight = text_with(8), nine = text_with(9);
+  ASSERT_EQ(eight.exit_code, done) << eight.err;
+  EXPECT_NE(eight.out.find(" um on average, at most "), std::string::npos) << eight.out;
+  ASSERT_EQ(nine.exit_code, done) << nine.err;
+  EXPECT_NE(nine.out.find("not in the file, because the errors depend on more than eight states"), std::string::npos)
+      << nine.out;
+}
+
 TEST_F(CompensateFreezeTest, AnArmIsRefusedAsNothingIsKnownOfWhatRemains) {
   const std::string arm = (folder.path() / "arm.machine.toml").string();
   const std::string arm_errors = (folder.path() / "arm.errors.toml").string();

@@ -62,6 +62,7 @@ struct FrozenCompensation {
   double accuracy_turn = 0;  ///< rad
   double difference = 0;     ///< mm, the same by the errors that are frozen: what freezing itself changes
   double largest_uncertainty = 0, mean_uncertainty = 0;  ///< mm, of the point's correction; 0: not stated
+  bool too_many_states = false;    ///< for the uncertainty of the errors, which the file then does not have
   double uncertainty_lattice = 0;  ///< mm, largest difference of the file's uncertainty from the full model's
   int worst_iterations = 0;        ///< of all calls, both directions
   std::size_t poses = 0, limited = 0, unreached = 0;  ///< tried; turn bounded; point not reached

@@ -208,7 +208,9 @@ FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const 
     state_channels(machine, plan, largest, result);
   }
   result.format = static_cast<int>(plan.any() ? frozen::kFormatWithStates : frozen::kFormatWithoutStates);
-  const UncertaintyLattice uncertainty = uncertainty_lattice(machine, errors, options, corners(machine, plan));
+  const std::vector<std::vector<double>> ends = corners(machine, plan);
+  result.too_many_states = ends.empty() && options.covariance.size() > 0 && !options.covariance.isZero(0);
+  const UncertaintyLattice uncertainty = uncertainty_lattice(machine, errors, options, ends);
   write_uncertainty(uncertainty, out);
   result.largest_uncertainty = uncertainty.largest;
   result.mean_uncertainty = uncertainty.mean;

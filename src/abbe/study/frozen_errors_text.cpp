@@ -62,7 +62,9 @@ std::string frozen_errors_text(const FrozenErrors& result, const FrozenOutput& f
         "{:.2f} um\n",
         1e3 * frozen.mean_uncertainty, 1e3 * frozen.largest_uncertainty, 1e3 * frozen.uncertainty_lattice);
   } else {
-    text += "  standard uncertainty of the tool's correction: not stated by the errors file\n";
+    text += fmt::format("  standard uncertainty of the tool's correction: not {}\n",
+                        frozen.too_many_states ? "in the file, because the errors depend on more than eight states"
+                                               : "stated by the errors file");
   }
   if (result.leave_out_factor > 0) text += left_out_text(machine, result.leave_out_factor, result.left_out, "  ");
   for (const FrozenCompensation::Channel& channel : frozen.channels) {
