@@ -86,35 +86,35 @@ JointPrior walk_prior(double variance) {
   return prior;
 }
 
+/// The walk as identification finds it, from a start of 1e-6.
+EstimatedWalk found_walk(const std::vector<double>& data) {
+  FunctionObservations observations(2 + kTimes, 1, data, kNoise, wandering);
+  observations.start(std::vector<double>(2 + kTimes, 0.0));
+  Problem problem = function_problem({&observations});
+  problem.joint_priors = {walk_prior(1e-6)};
+  std::vector<EstimatedWalk> walks = {{"walk", 0, false, {0}, 1e-6}};
+  const Identification found = identify_with_walks(problem, walks);
+  EXPECT_EQ(found.status, IdentifyStatus::converged) << found.message;
+  return walks.front();
+}
+
 TEST(WalkIntensity, IsTheMostLikelyOneOfWholeMatrices) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     const std::vector<double> data = wandering_readings(seed, 0.01);
-    FunctionObservations observations(2 + kTimes, 1, data, kNoise, wandering);
-    observations.start(std::vector<double>(2 + kTimes, 0.0));
-    Problem problem = function_problem({&observations});
-    problem.joint_priors = {walk_prior(1e-6)};
-    std::vector<EstimatedWalk> walks = {{"walk", 0, false, {0}, 1e-6}};
-    const Identification found = identify_with_walks(problem, walks);
-    ASSERT_EQ(found.status, IdentifyStatus::converged) << found.message;
-    EXPECT_NEAR(walks[0].variance / dense_variance(data), 1, 1e-5) << seed;
+    const EstimatedWalk walk = found_walk(data);
+    EXPECT_NEAR(walk.variance / dense_variance(data), 1, 1e-5) << seed;
     // The information is the curvature of the likelihood in the mean: of the same size in one draw.
-    EXPECT_GT(walks[0].variance_uncertainty, 0.1 * walks[0].variance);
-    EXPECT_LT(walks[0].variance_uncertainty, walks[0].variance);
+    EXPECT_GT(walk.variance_uncertainty, 0.1 * walk.variance);
+    EXPECT_LT(walk.variance_uncertainty, walk.variance);
   }
 }
 
 TEST(WalkIntensity, OfWhatStandsStillIsZero) {
   std::size_t none = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    FunctionObservations observations(2 + kTimes, 1, wandering_readings(50 + seed, 0), kNoise, wandering);
-    observations.start(std::vector<double>(2 + kTimes, 0.0));
-    Problem problem = function_problem({&observations});
-    problem.joint_priors = {walk_prior(1e-6)};
-    std::vector<EstimatedWalk> walks = {{"walk", 0, false, {0}, 1e-6}};
-    const Identification found = identify_with_walks(problem, walks);
-    ASSERT_EQ(found.status, IdentifyStatus::converged) << found.message;
-    none += walks[0].at_zero ? 1U : 0U;
-    EXPECT_LT(walks[0].variance, 4 * walks[0].variance_uncertainty);
+    const EstimatedWalk walk = found_walk(wandering_readings(50 + seed, 0));
+    none += walk.at_zero ? 1U : 0U;
+    EXPECT_LT(walk.variance, 4 * walk.variance_uncertainty);
   }
   EXPECT_GE(none, 6U);  // half of the draws fall on the side of less than nothing
 }
