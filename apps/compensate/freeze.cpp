@@ -95,9 +95,9 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       ->capture_default_str();
   command->add_option(
       "--state-range", arguments->state_ranges,
-      "NAME=FROM:TO: values of a measured state, in its unit, for which its errors were identified; "
-      "others are held at the end and then not compensated (default for temperatures: 5 K below to 10 K "
-      "above the reference)");
+      "NAME_unit=FROM:TO, such as ambient_degC=15:30: values of a measured state that are compensated; beyond, "
+      "the end is held and then the reference taken (default: what the readings covered; temperatures without "
+      "that: 5 K below to 10 K above the reference)");
   command->add_option("--limit-um", arguments->limit_um, "Refuse if the tool would be corrected by more than this");
   command
       ->add_option("--largest-turn-deg", arguments->largest_turn_deg,

@@ -90,7 +90,8 @@ int run_poses(const PosesCommand& command) {
     tell("abbe: {}; nothing written\n", result.refused);
     return kNegative;
   }
-  if (result.not_reached == 0) return kDone;
+  for (const std::string& sentence : result.at_state.outside) tell("abbe: {}\n", sentence);
+  if (result.not_reached == 0) return result.at_state.outside.empty() ? kDone : kNegative;
   tell("abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", result.not_reached,
        result.poses.count());
   return kNegative;

@@ -25,7 +25,7 @@ def main():
         names, *rows = list(csv.reader(file))
     for k, name in enumerate(names[1:], 1):
         values = [float(row[k]) for row in rows]
-        print(f"{name.removesuffix('_degC')}={min(values) - MARGIN_K:.2f}:{max(values) + MARGIN_K:.2f}")
+        print(f"{name}={min(values) - MARGIN_K:.2f}:{max(values) + MARGIN_K:.2f}")
 
 
 main()

@@ -55,8 +55,8 @@ TEST_F(CompensateFreezeTest, TakesErrorsThatDependOnStates) {
   };
   const CommandResult without = freeze({});
   EXPECT_EQ(without.exit_code, bad_input);
-  EXPECT_NE(without.err.find("--state-range load=FROM:TO"), std::string::npos) << without.err;
-  const CommandResult result = freeze({"--state-range", "ambient=16:28", "load=0:200", "--json"});
+  EXPECT_NE(without.err.find("--state-range load_kg=FROM:TO"), std::string::npos) << without.err;
+  const CommandResult result = freeze({"--state-range", "ambient_degC=16:28", "load_kg=0:200", "--json"});
   ASSERT_EQ(result.exit_code, done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json["format"], 3);
@@ -66,17 +66,22 @@ TEST_F(CompensateFreezeTest, TakesErrorsThatDependOnStates) {
   // 8 K times 3 um per K of EXX at the end, and times 3 urad per K over 400 mm of EC0Y.
   EXPECT_NEAR(json["states"][0]["largest_um"].get<double>(), 8 * (3 + 1.2), 0.05);
   EXPECT_LT(json["accuracy_mm"].get<double>(), 1e-9);
-  const CommandResult text = freeze({"--state-range", "ambient=16:28", "load=0:200"});
+  const CommandResult text = freeze({"--state-range", "ambient_degC=16:28", "load_kg=0:200"});
   EXPECT_NE(text.out.find("  state ambient: 16 to 28 degC, reference 20; moves the tool by up to "), std::string::npos);
   const CommandResult checked = abbe({"check", output});
   EXPECT_EQ(checked.exit_code, done) << checked.err;
   EXPECT_NE(checked.out.find("  state column: lag of ambient, 1800 s\n"), std::string::npos) << checked.out;
-  for (const char* const wrong : {"cold=1:2", "ambient=28:16", "ambient=16", "ambient", "column=16:28", "load=x:2"}) {
+  for (const char* const wrong : {"cold=1:2", "ambient=16:28", "ambient_degC=28:16", "ambient_degC=16", "ambient_degC",
+                                  "column_degC=16:28", "load_kg=x:2"}) {
     const CommandResult refused = freeze({"--state-range", wrong});
     EXPECT_EQ(refused.exit_code, bad_input) << wrong;
-    EXPECT_NE(refused.err.find("--state-range: "), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("--state-range " + std::string(wrong) + ": "), std::string::npos) << refused.err;
   }
-  const CommandResult left_out = freeze({"--state-range", "load=0:200", "--leave-out-below-uncertainty", "1"});
+  std::ofstream(warm, std::ios::app) << "[covered]\nambient_degC = [17, 24]\nload_kg = [0, 80]\n";
+  const CommandResult covered = freeze({});
+  EXPECT_EQ(covered.exit_code, done) << covered.err;
+  EXPECT_NE(covered.out.find("  state ambient: 17 to 24 degC, "), std::string::npos) << covered.out;
+  const CommandResult left_out = freeze({"--state-range", "load_kg=0:200", "--leave-out-below-uncertainty", "1"});
   EXPECT_EQ(left_out.exit_code, bad_input);
   EXPECT_NE(left_out.err.find("EXX*ambient"), std::string::npos) << left_out.err;
 }

@@ -126,6 +126,22 @@ TEST_F(States, UncertaintiesAreThoseOfTheStateToo) {
             1.5 * uncertainty("warm", at));
 }
 
+TEST_F(States, PosesBeyondWhatTheReadingsCoveredAreSaid) {
+  folder.write("warm.errors.toml", errors_of(false) + "[covered]\nhall_degC = [18, 27]\ncolumn_degC = [19, 26]\n");
+  const auto poses = [&](const std::string& rows) {
+    folder.write("states.csv", "X_mm,Y_mm,Z_mm,hall_degC,column_degC\n" + rows);
+    return run({"compensate", "poses", "states.csv"}, "warm", {"--dry-run", "--json"});
+  };
+  const CommandResult inside = poses("10,20,30,18,26\n300,200,150,27,19\n");
+  EXPECT_EQ(inside.exit_code, ExitCode::done) << inside.err;
+  EXPECT_FALSE(nlohmann::json::parse(inside.out).contains("states_outside_measured"));
+  const CommandResult outside = poses("10,20,30,20,20\n300,200,150,31,20\n300,200,150,29,20\n");
+  EXPECT_EQ(outside.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(outside.err, HasSubstr("hall_degC lies outside the 18 to 27 that the readings cover at 2 of 3 poses, "
+                                     "furthest in row 2 (31): the errors are extrapolated there"));
+  EXPECT_EQ(nlohmann::json::parse(outside.out)["states_outside_measured"].size(), 1U);
+}
+
 TEST_F(States, TablesOfOneStateSayWhatTheyLeaveOverADay) {
   const auto over = [&](const std::string& record) {
     folder.write("day.csv", record);

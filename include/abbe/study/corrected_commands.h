@@ -64,7 +64,7 @@ struct CorrectedCommands {
   Machine machine;
   PoseList poses;               ///< of the request
   double leave_out_factor = 0;  ///< of the request
-  StateValues at_state{};       ///< at which the errors are taken
+  StateValues at_state{};       ///< at which the errors are taken; `outside` also of the states of the poses
   CorrectedPoses corrected;
   bool has_reversals = false;   ///< the errors have reversal values, which are not in the commands
   std::string refused;          ///< why the commands must not be used, in words; empty: they may

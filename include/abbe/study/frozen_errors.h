@@ -58,7 +58,7 @@ struct FreezeRequest {
   double largest_turn = 0.57 * kDegree;  ///< --largest-turn-deg: of all rotary axes together; at most 10 degrees
   bool world_zero_at_joints = true;      ///< --world: as FreezeOptions
   double leave_out_factor = 0;           ///< --leave-out-below-uncertainty: 0 to 1000; 0: none is left out
-  /// --state-range: "NAME=FROM:TO" of measured states, in their unit; FreezeOptions::state_ranges
+  /// --state-range: "NAME_unit=FROM:TO" of measured states; others: what the readings covered (ErrorsFile::covered)
   std::vector<std::string> state_ranges;
   std::optional<double> limit_um;  ///< --limit-um: larger corrections of the tool are refused; above zero
 };

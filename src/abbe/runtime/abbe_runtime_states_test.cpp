@@ -234,7 +234,7 @@ TEST(RuntimeStates, WhatCannotBeFrozenIsSaid) {
             "EXX*side depends on the side from which an axis came: a frozen compensation knows positions only");
   errors.motions[0].state = find_state(machine, "payload");
   EXPECT_EQ(freeze(machine, errors, {}).problem,
-            "the range of the state payload in kg is not given: --state-range payload=FROM:TO");
+            "the range of the state payload is not given: --state-range payload_kg=FROM:TO");
   errors.motions[0].state = find_state(machine, "ambient");
   FreezeOptions options = test::options_with_states(machine);
   options.state_ranges[0] = {};

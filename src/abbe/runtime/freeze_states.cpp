@@ -66,8 +66,8 @@ StateRange range_of(const Machine& machine, std::size_t state, const FreezeOptio
   if (!stated && (one.unit == "degC" || one.unit == "K")) {
     range = {one.reference + kDefaultBelow, one.reference + kDefaultAbove};
   } else if (!stated) {
-    problem = fmt::format("the range of the state {} in {} is not given: --state-range {}=FROM:TO", one.name,
-                          one.unit == "1" ? "its unit" : one.unit, one.name);
+    problem =
+        fmt::format("the range of the state {} is not given: --state-range {}=FROM:TO", one.name, state_column(one));
   }
   if (problem.empty() &&
       !(range.from < range.to && std::abs(range.from) <= frozen::kLongest && std::abs(range.to) <= frozen::kLongest)) {

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "abbe/errors/error_states.h"
 #include "abbe/formats/machine/correction_limits.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/words/corrected_poses_words.h"
 #include "abbe/report/words/state_words.h"
@@ -28,6 +30,9 @@ CorrectedCommands correct_commands(const CommandsRequest& request) {
   result.poses = request.poses;
   result.leave_out_factor = request.leave_out_factor;
   result.at_state = request.errors.at_state;
+  for (std::string& sentence : states_outside_covered(request.machine, request.errors, request.poses)) {
+    result.at_state.outside.push_back(std::move(sentence));
+  }
   result.has_reversals = !request.errors.errors.reversals.empty();
   result.corrected = corrected_poses(
       request.machine, request.errors.errors, request.errors.covariance, request.poses,

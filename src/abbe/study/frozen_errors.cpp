@@ -7,8 +7,8 @@
 #include "abbe/compensate/program/program_uncertainty.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
-#include "abbe/formats/text/number_text.h"
 #include "abbe/machine/position_words.h"
 #include "abbe/report/version.h"
 
@@ -18,24 +18,19 @@ namespace {
 /// A frozen compensation that differs more from the full model of the same errors is not given out, mm.
 constexpr double kLargestFreezeDifference = 1e-6;
 
-/// "ambient=15:30": the measured states of these names.
-std::vector<StateRange> parse_state_ranges(const Machine& machine, const std::vector<std::string>& texts) {
-  std::vector<StateRange> ranges(machine.states.size());
-  for (const std::string& text : texts) {
-    const std::size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
-    const std::string name = text.substr(0, equals);
-    const std::size_t state = find_state(machine, name);
-    if (state == kNoState || machine.states[state].kind != StateKind::measured) {
-      throw InputError({.field = "--state-range"}, fmt::format("'{}' is no measured state of the machine", name),
-                       "NAME=FROM:TO, such as ambient_temperature=15:30");
+/// Ranges that are stated, else those that the readings of the errors covered.
+std::vector<StateRange> ranges_to_freeze(const FreezeRequest& request) {
+  const auto stated = state_range_options(request.machine, "--state-range", request.state_ranges);
+  std::vector<StateRange> ranges(stated.size());
+  for (std::size_t j = 0; j < stated.size(); ++j) {
+    if (stated[j]) {
+      ranges[j] = {stated[j]->first, stated[j]->second};
+      continue;
     }
-    StateRange& range = ranges[state];
-    const std::string unit = machine.states[state].unit;
-    if (colon == std::string::npos ||
-        parse_number(text.substr(equals + 1, colon - equals - 1), 0, range.from) != NumberProblem::none ||
-        parse_number(text.substr(colon + 1), 0, range.to) != NumberProblem::none || !(range.from < range.to)) {
-      throw InputError({.field = "--state-range"}, fmt::format("'{}' is no range", text),
-                       fmt::format("{}=FROM:TO{}, the lower end first", name, unit == "1" ? "" : " in " + unit));
+    for (const CoveredState& covered : request.errors.covered) {
+      if (covered.column == state_column(request.machine.states[j]) && covered.from < covered.to) {
+        ranges[j] = {covered.from, covered.to};
+      }
     }
   }
   return ranges;
@@ -57,7 +52,7 @@ FreezeOptions freeze_options(const FreezeRequest& request) {
   options.covariance = parameter_covariance(request.errors.errors, request.errors.covariance);
   options.source = machine_text(request.machine) + errors_text(request.machine, request.errors);
   options.version = version_text();
-  options.state_ranges = parse_state_ranges(request.machine, request.state_ranges);
+  options.state_ranges = ranges_to_freeze(request);
   return options;
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "abbe/errors/poses.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/machine/machine.h"
 
@@ -26,13 +29,25 @@ std::vector<double> state_options(const Machine& machine, const std::string& opt
 ErrorsFile at_given_states(const Machine& machine, ErrorsFile file, std::span<const double> values,
                            const std::string& path);
 
-/// read_errors() with --state: for a job that cannot take states into account, and can be done at values of theirs.
-/// @param states  texts of --state. @throws InputError as both
 /// Adds to the covariance what the errors have wandered since their measurement, as their file says (ErrorAgeing).
+/// @param days  since the measurement
 void add_ageing(const Machine& machine, double days, ErrorsFile& file);
 
+/// read_errors() with --state: for a job that cannot take states into account, and can be done at values of theirs.
+/// @param states  texts of --state. @throws InputError as both
 ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
                           const std::vector<std::string>& states);
+
+/// Ranges of measured states, "ambient_degC=15:30" of an option, the lower end first.
+/// @param option  how the user calls it, for the error: "--state-range"
+/// @return [states of the machine] in the unit of each state; nothing where not given
+/// @throws InputError
+std::vector<std::optional<std::pair<double, double>>> state_range_options(const Machine& machine,
+                                                                          const std::string& option,
+                                                                          const std::vector<std::string>& texts);
+
+/// States of poses beyond what the readings of the errors covered: a sentence for each state, with the worst pose.
+std::vector<std::string> states_outside_covered(const Machine& machine, const ErrorsFile& file, const PoseList& poses);
 
 /// "ambient_degC = 26.5, column_degC = 24".
 std::string state_words(const StateValues& values);

@@ -72,47 +72,111 @@ std::string name_problem(const Machine& machine, const std::string& name, const 
                      near ? fmt::format(" (did you mean {}?)", *near) : std::string());
 }
 
+/// A number of an option. @throws InputError
+double option_number(const std::string& field, std::string_view text) {
+  double value = 0;
+  const auto fail = [&](const char* problem, const std::string& expected) {
+    throw InputError({.field = field}, problem, expected);
+  };
+  switch (parse_number(text, 0, value)) {
+    case NumberProblem::none:
+      break;
+    case NumberProblem::not_a_number:
+      fail("not a number", "a value in the unit of the name, with a decimal point");
+      break;
+    case NumberProblem::not_finite:
+      fail("not finite", "a value in the unit of the name");
+      break;
+    case NumberProblem::too_large:
+      fail("too large", fmt::format("at most {:g}", kLargestInput));
+      break;
+  }
+  if (!(std::abs(value) <= kLargestInput)) fail("too large", fmt::format("at most {:g}", kLargestInput));
+  return value;
+}
+
+/// Index of the given state whose column has this name. @throws InputError
+std::size_t state_of_column(const Machine& machine, const std::string& field, const std::string& name) {
+  for (std::size_t state = 0; state < machine.states.size(); ++state) {
+    if (is_input(machine.states[state].kind) && state_column(machine.states[state]) == name) return state;
+  }
+  const std::vector<std::string> columns = given_columns(machine);
+  throw InputError({.field = field}, name_problem(machine, name, columns),
+                   columns.empty() ? "states of kind \"measured\" in the machine file"
+                                   : fmt::format("{}", fmt::join(columns, ", ")));
+}
+
 }  // namespace
 
 std::vector<double> state_options(const Machine& machine, const std::string& option,
                                   const std::vector<std::string>& texts) {
   std::vector<double> values(machine.states.size(), std::numeric_limits<double>::quiet_NaN());
-  const std::vector<std::string> columns = given_columns(machine);
   for (const std::string& text : texts) {
-    const auto fail = [&](const std::string& problem, const std::string& expected) {
-      throw InputError({.field = option + " " + text}, problem, expected);
-    };
+    const std::string field = option + " " + text;
     const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) fail("not understood", "NAME_unit=value, such as ambient_degC=26.5");
-    const std::string name = text.substr(0, equals);
-    std::size_t state = 0;
-    while (state < values.size() &&
-           !(is_input(machine.states[state].kind) && state_column(machine.states[state]) == name)) {
-      ++state;
+    if (equals == std::string::npos) {
+      throw InputError({.field = field}, "not understood", "NAME_unit=value, such as ambient_degC=26.5");
     }
-    if (state == values.size()) {
-      fail(name_problem(machine, name, columns), columns.empty() ? "states of kind \"measured\" in the machine file"
-                                                                 : fmt::format("{}", fmt::join(columns, ", ")));
-    }
-    if (std::isfinite(values[state])) fail("was given before", "each state once");
-    double value = 0;
-    switch (parse_number(std::string_view(text).substr(equals + 1), 0, value)) {
-      case NumberProblem::none:
-        break;
-      case NumberProblem::not_a_number:
-        fail("not a number", "a value in the unit of the name");
-        break;
-      case NumberProblem::not_finite:
-        fail("not finite", "a value in the unit of the name");
-        break;
-      case NumberProblem::too_large:
-        fail("too large", fmt::format("at most {:g}", kLargestInput));
-        break;
-    }
-    if (!(std::abs(value) <= kLargestInput)) fail("too large", fmt::format("at most {:g}", kLargestInput));
-    values[state] = value;
+    const std::size_t state = state_of_column(machine, field, text.substr(0, equals));
+    if (std::isfinite(values[state])) throw InputError({.field = field}, "was given before", "each state once");
+    values[state] = option_number(field, std::string_view(text).substr(equals + 1));
   }
   return values;
+}
+
+std::vector<std::optional<std::pair<double, double>>> state_range_options(const Machine& machine,
+                                                                          const std::string& option,
+                                                                          const std::vector<std::string>& texts) {
+  std::vector<std::optional<std::pair<double, double>>> ranges(machine.states.size());
+  for (const std::string& text : texts) {
+    const std::string field = option + " " + text;
+    const std::size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
+    if (equals == std::string::npos || colon == std::string::npos) {
+      throw InputError({.field = field}, "not understood", "NAME_unit=FROM:TO, such as ambient_degC=15:30");
+    }
+    const std::size_t state = state_of_column(machine, field, text.substr(0, equals));
+    if (machine.states[state].kind != StateKind::measured) {
+      throw InputError({.field = field}, fmt::format("{} is computed from its channel", machine.states[state].name),
+                       "the range of a measured state");
+    }
+    if (ranges[state]) throw InputError({.field = field}, "was given before", "each state once");
+    const std::string_view numbers = std::string_view(text).substr(equals + 1);
+    const double from = option_number(field, numbers.substr(0, colon - equals - 1));
+    const double to = option_number(field, numbers.substr(colon - equals));
+    if (!(from < to)) throw InputError({.field = field}, "the range is empty", "the lower end first");
+    ranges[state] = std::pair(from, to);
+  }
+  return ranges;
+}
+
+std::vector<std::string> states_outside_covered(const Machine& machine, const ErrorsFile& file, const PoseList& poses) {
+  std::vector<std::string> sentences;
+  const std::vector<std::uint8_t> used = used_states(machine, file.errors);
+  for (std::size_t j = 0; j < poses.state.size(); ++j) {
+    if (used[j] == 0 || poses.state[j].empty()) continue;
+    for (const CoveredState& covered : file.covered) {
+      if (covered.column != state_column(machine.states[j])) continue;
+      std::size_t outside = 0, worst = 0;
+      double furthest = 0;
+      for (std::size_t k = 0; k < poses.count(); ++k) {
+        const double value = poses.state[j][k];
+        const double beyond = std::max(covered.from - value, value - covered.to);
+        if (!(beyond > 0)) continue;
+        ++outside;
+        if (beyond > furthest) {
+          furthest = beyond;
+          worst = k;
+        }
+      }
+      if (outside == 0) continue;
+      sentences.push_back(fmt::format(
+          "{} lies outside the {} to {} that the readings cover at {} of {} poses, furthest in row {} ({}): "
+          "the errors are extrapolated there",
+          covered.column, shortest_text(covered.from), shortest_text(covered.to), outside, poses.count(), worst + 1,
+          shortest_text(poses.state[j][worst])));
+    }
+  }
+  return sentences;
 }
 
 ErrorsFile at_given_states(const Machine& machine, ErrorsFile file, std::span<const double> values,

@@ -217,7 +217,7 @@ void read_facets(TextCursor& cursor, const FileUnit& unit, bool& inside, FacetBl
         continue;
       }
       if (!inside || !is_word(word, "facet")) {
-        cursor.fail("", fmt::format("'{}'", shown_word(word)), inside ? "'facet'" : "'solid'");
+        cursor.fail("", fmt::format("'{}'", shown_word(word)), inside ? "'facet' or 'endsolid'" : "'solid'");
       }
     }
     require_word(cursor, "normal");
