@@ -45,7 +45,7 @@ ChannelValue channel_value(const StateChannel& channel, double time_s);
 /// A channel behind a first-order lag (FirstOrderLag), at any time: exact for the straight lines between the samples.
 class LaggedChannel {
  public:
-  /// @param channel  has to live on
+  /// @param channel  must outlive this object
   /// @param start    value of the lag at the first sample; not given: in equilibrium there
   LaggedChannel(const StateChannel& channel, double time_constant_s, std::optional<double> start = std::nullopt);
 
