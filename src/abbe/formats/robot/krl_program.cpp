@@ -89,7 +89,7 @@ void read_krl_aggregate(RobotProgram& program, RobotScan& scan, const std::strin
       if (!parts.emplace(part, number).second) scan.fail(number.begin, field, "is given twice", "each part once");
     } else {
       in_numbers = false;
-      while (!scan.at_end() && scan.peek() != ',' && scan.peek() != '}') ++scan.at;
+      while (scan.peek() != ',' && scan.peek() != '}' && !scan.at_end()) ++scan.at;
     }
   } while (scan.take(','));
   scan.expect('}', name, "the end of the position");
@@ -119,7 +119,7 @@ void read_krl_aggregate(RobotProgram& program, RobotScan& scan, const std::strin
 /// TOOL_NO and BASE_NO of {TOOL_NO 1,BASE_NO 0,...}: frames that positions are in.
 void read_krl_frames(RobotScan& scan, std::set<std::string>& frames) {
   std::string frame;
-  while (!scan.at_end() && scan.peek() != '}' && scan.code()[scan.at] != '\n') {
+  while (scan.peek() != '}' && !scan.at_end() && scan.code()[scan.at] != '\n') {
     const std::string part = krl_capitals(scan.word());
     if ((part == "TOOL_NO" || part == "BASE_NO") && scan.is_number()) {
       frame += fmt::format("{} {:g} ", part, scan.number(part, "a number").value);

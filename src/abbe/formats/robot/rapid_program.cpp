@@ -88,7 +88,7 @@ void read_rapid_data(RobotProgram& program, RobotScan& scan, RobotPositionKind k
   std::size_t depth = 0;
   if (scan.take('{')) {
     depth = 1;
-    while (!scan.at_end() && scan.peek() != '}' && scan.peek() != ';') depth += scan.code()[scan.at++] == ',' ? 1 : 0;
+    while (scan.peek() != '}' && scan.peek() != ';' && !scan.at_end()) depth += scan.code()[scan.at++] == ',' ? 1 : 0;
     scan.expect('}', name, "the size of the array in braces");
     if (depth > 3) scan.fail(scan.at, name, fmt::format("an array of {} dimensions", depth), "at most 3");
   }

@@ -5,8 +5,12 @@
 
 #include <cmath>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/formats/text/replaced_text_for_test.h"
 #include "abbe/geometry/angle_units.h"
@@ -277,6 +281,29 @@ TEST(RobotProgram, SeveralGroupsOfFanucAreListed) {
   ASSERT_EQ(program.left.size(), 2U);
   EXPECT_EQ(program.left[0].reason, "P[1]: GP2 is not of the arm");
   EXPECT_EQ(program.left[1].reason, "P[2]: GP1 has no numbers");
+}
+
+TEST(RobotProgram, AFileThatEndsAnywhereIsReadOrRefused) {
+  const std::string frame = "DEFDAT A\nDECL FDAT FP1={TOOL_NO 1,BASE_NO 0,IPO_FRAME #BASE,POINT2[] \" \"}\nENDDAT\n";
+  const std::string array = "MODULE m\n  CONST robtarget p{2,3} := [];\nENDMODULE\n";
+  std::vector<std::pair<std::string, RobotLanguage>> programs = {{frame, RobotLanguage::krl},
+                                                                 {array, RobotLanguage::rapid}};
+  for (const std::string& example : kRobotExamples) {
+    programs.emplace_back(robot_example(example).text, *robot_language_of(example));
+  }
+  for (const auto& [text, language] : programs) {
+    std::size_t refused = 0;
+    for (std::size_t size = 0; size < text.size(); ++size) {
+      for (const char* const ending : {"", "  \t ", "{", "\" \""}) {
+        try {
+          parse_robot_program(text.substr(0, size) + ending, language, "cut");
+        } catch (const InputError&) {
+          ++refused;
+        }
+      }
+    }
+    EXPECT_GT(refused, 0U);
+  }
 }
 
 TEST(RobotProgram, MistakesAreNamedWithTheirPlace) {

@@ -19,6 +19,7 @@ class RobotScan {
   RobotScan(std::string_view text, const std::string& file, char comment);
 
   std::size_t at = 0;
+  /// Blanks count as text: to be asked after peek() where only they may be left.
   bool at_end() const { return at >= code_.size(); }
   /// The next character that is not blank, which the scan then stands at; 0 at the end.
   char peek();
