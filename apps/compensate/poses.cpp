@@ -12,6 +12,7 @@
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/workpiece_option.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
@@ -35,6 +36,7 @@ struct PosesCommand {
   std::optional<double> limit_um;
   std::optional<double> largest_turn_deg;
   double leave_out_factor = 0;
+  WorkpieceOptions workpiece;
   bool dry_run = false, json = false, accept_misfit = false;
 };
 
@@ -44,6 +46,9 @@ int run_robot_program(const PosesCommand& command, RobotLanguage language) {
   request.machine = read_machine(command.machine);
   request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, command.states,
                                        StatesOfErrors::allowed);
+  if (command.workpiece.any()) {
+    throw InputError({.field = "--workpiece-expansion-um-per-m-K"}, "is for poses as CSV", "poses, no robot program");
+  }
   request.program = parse_robot_program(read_text_file(command.poses), language, command.poses);
   if (!command.output.empty()) refuse_input_as_output(command.output);
   request.leave_out_factor = command.leave_out_factor;
@@ -71,6 +76,7 @@ int run_poses(const PosesCommand& command) {
   request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, command.states,
                                        StatesOfErrors::allowed);
   request.poses = read_poses(command.poses, request.machine);
+  request.workpiece = workpiece_option(request.machine, command.workpiece, command.states, request.poses);
   if (!command.output.empty()) refuse_input_as_output(command.output);
   request.leave_out_factor = command.leave_out_factor;
   request.limit_um = command.limit_um;
@@ -124,6 +130,15 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   command->add_option("--limit-um", options->limit_um, "Refuse corrections of the functional point above this, um");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
                       "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
+  WorkpieceOptions& workpiece = options->workpiece;
+  command->add_option(
+      "--workpiece-expansion-um-per-m-K", workpiece.expansion,
+      "Expansion coefficient of a workpiece that is to be right at 20 degC and has another temperature");
+  command->add_option("--u-workpiece-expansion-um-per-m-K", workpiece.u_expansion, "Its standard uncertainty");
+  command->add_option("--workpiece-state", workpiece.state, "State of the machine that is its temperature");
+  command->add_option("--u-workpiece-temperature-K", workpiece.u_kelvin, "Standard uncertainty of that temperature");
+  command->add_option("--workpiece-fixed-mm", workpiece.fixed_mm, "Point that stays where it is (default 0 0 0)")
+      ->expected(3);
   command->add_flag("--dry-run", options->dry_run,
                     "Report only: the largest corrections and where they are; write nothing");
   add_states(*command, options->states);

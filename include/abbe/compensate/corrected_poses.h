@@ -10,6 +10,7 @@
 
 #include "abbe/compensate/compensated_inverse.h"
 #include "abbe/compensate/left_out_errors.h"
+#include "abbe/compensate/workpiece_expansion.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"
 #include "abbe/geometry/angle_units.h"
@@ -25,6 +26,8 @@ struct CorrectedPosesOptions {
   std::optional<double> largest_turn{};  ///< of rotary axes, rad; none: kLargestTurn, of an arm kLargestTurnOfArm
   double leave_out_factor = 0;           ///< errors below so many of their standard uncertainties are left out; 0: none
   std::vector<std::size_t> held{};       ///< axes that keep their commands
+  /// The tool is brought to where the points of the workpiece are at its temperature.
+  std::optional<WorkpieceExpansion> workpiece{};
 };
 
 /// A figure and the pose where it is, from 1; 0: nowhere.
@@ -54,7 +57,8 @@ struct CorrectedPoses {
 
 /// Axis commands that bring the actual tool to where the nominal machine has it, pose by pose: point and direction, of
 /// an arm the full pose. States that are computed from the commands follow the corrected ones; poses that do not give a
-/// measured state of the errors are not covered.
+/// measured state of the errors are not covered; those without the temperature of an expanding workpiece are not
+/// finite.
 /// @param covariance  of errors.parameters(), or 0 x 0: what the errors state of their standard uncertainties
 CorrectedPoses corrected_poses(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
                                const PoseList& poses, const CorrectedPosesOptions& options = {});

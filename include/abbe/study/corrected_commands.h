@@ -54,8 +54,9 @@ struct CommandsRequest {
 
   /// --largest-turn-deg: of rotary axes, at most 10 degrees; none: 0.5 degrees, of an arm 5 degrees
   std::optional<double> largest_turn;
-  std::vector<std::size_t> held;   ///< --hold: axes that keep their commands
-  double leave_out_factor = 0;     ///< --leave-out-below-uncertainty: 0 to 1000; 0: none is left out; no states
+  std::vector<std::size_t> held;  ///< --hold: axes that keep their commands
+  double leave_out_factor = 0;    ///< --leave-out-below-uncertainty: 0 to 1000; 0: none is left out; no states
+  std::optional<WorkpieceExpansion> workpiece{};  ///< --workpiece-...: not at 20 degC, where it is to be right
   std::optional<double> limit_um;  ///< --limit-um: larger corrections of the point are refused; above zero
 };
 
@@ -66,9 +67,10 @@ struct CorrectedCommands {
   double leave_out_factor = 0;  ///< of the request
   StateValues at_state{};       ///< at which the errors are taken; `outside` also of the states of the poses
   CorrectedPoses corrected;
-  bool has_reversals = false;   ///< the errors have reversal values, which are not in the commands
-  std::string refused;          ///< why the commands must not be used, in words; empty: they may
-  std::size_t not_reached = 0;  ///< poses to which the tool is not brought
+  std::optional<WorkpieceExpansion> workpiece{};  ///< of the request
+  bool has_reversals = false;                     ///< the errors have reversal values, which are not in the commands
+  std::string refused;                            ///< why the commands must not be used, in words; empty: they may
+  std::size_t not_reached = 0;                    ///< poses to which the tool is not brought
 };
 
 /// Axis commands that bring the actual tool to where the nominal machine has it. Opens no file and prints nothing.

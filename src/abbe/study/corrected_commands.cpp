@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -14,6 +15,47 @@
 #include "abbe/report/words/state_words.h"
 
 namespace abbe {
+namespace {
+
+void require_workpiece_temperature(const CommandsRequest& request) {
+  for (std::size_t k = 0; k < request.poses.count(); ++k) {
+    if (std::isfinite(workpiece_factor(request.machine, *request.workpiece, request.poses, k))) continue;
+    throw InputError({.field = state_column(request.machine.states.at(request.workpiece->state))},
+                     "the temperature of the workpiece is not given at all poses", "a column with this name");
+  }
+}
+
+/// Coldest and warmest.
+std::pair<double, double> workpiece_temperatures(const CorrectedCommands& result) {
+  const std::vector<double>& values = result.poses.state[result.workpiece->state];
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return {*low, *high};
+}
+
+std::string workpiece_line(const CorrectedCommands& result) {
+  if (!result.workpiece || result.poses.count() == 0) return {};
+  const WorkpieceExpansion& workpiece = *result.workpiece;
+  const auto [low, high] = workpiece_temperatures(result);
+  return fmt::format(
+      "workpiece: {:.6g} um/(m K), right at 20 degC and now at {:.6g}{}, fixed at ({:.6g}, {:.6g}, {:.6g}) mm\n",
+      1e6 * workpiece.coefficient, low, high > low ? fmt::format(" to {:.6g} degC", high) : " degC",
+      workpiece.fixed_point[0], workpiece.fixed_point[1], workpiece.fixed_point[2]);
+}
+
+void add_workpiece(const CorrectedCommands& result, nlohmann::ordered_json& json) {
+  if (!result.workpiece || result.poses.count() == 0) return;
+  const WorkpieceExpansion& workpiece = *result.workpiece;
+  const auto [low, high] = workpiece_temperatures(result);
+  json["workpiece"] = {
+      {"state", result.machine.states[workpiece.state].name},
+      {"coefficient_um_per_m_K", 1e6 * workpiece.coefficient},
+      {"standard_uncertainty_um_per_m_K", 1e6 * workpiece.standard_uncertainty},
+      {"temperature_standard_uncertainty_K", workpiece.temperature_uncertainty},
+      {"temperatures_degC", {low, high}},
+      {"fixed_point_mm", {workpiece.fixed_point[0], workpiece.fixed_point[1], workpiece.fixed_point[2]}}};
+}
+
+}  // namespace
 
 CorrectedCommands correct_commands(const CommandsRequest& request) {
   const std::size_t missing = missing_state(request.machine, request.errors.errors, request.poses);
@@ -23,6 +65,7 @@ CorrectedCommands correct_commands(const CommandsRequest& request) {
   }
   if (request.leave_out_factor != 0) refuse_states(request.machine, request.errors.errors, "what leaves out errors");
   check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);
+  if (request.workpiece) require_workpiece_temperature(request);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   if (request.largest_turn) check_largest_turn(*request.largest_turn);
   CorrectedCommands result;
@@ -33,10 +76,13 @@ CorrectedCommands correct_commands(const CommandsRequest& request) {
   for (std::string& sentence : states_outside_covered(request.machine, request.errors, request.poses)) {
     result.at_state.outside.push_back(std::move(sentence));
   }
+  result.workpiece = request.workpiece;
   result.has_reversals = !request.errors.errors.reversals.empty();
-  result.corrected = corrected_poses(
-      request.machine, request.errors.errors, request.errors.covariance, request.poses,
-      {.largest_turn = request.largest_turn, .leave_out_factor = request.leave_out_factor, .held = request.held});
+  result.corrected = corrected_poses(request.machine, request.errors.errors, request.errors.covariance, request.poses,
+                                     {.largest_turn = request.largest_turn,
+                                      .leave_out_factor = request.leave_out_factor,
+                                      .held = request.held,
+                                      .workpiece = request.workpiece});
   const CorrectedPoses& corrected = result.corrected;
   if (!corrected.problem.empty()) throw InputError({.file = request.machine_file}, corrected.problem);
   if (!(1e3 * corrected.largest_shift.value <= limit_um)) {
@@ -55,7 +101,7 @@ std::string corrected_commands_csv(const CorrectedCommands& result) {
 }
 
 std::string corrected_commands_text(const CorrectedCommands& result) {
-  std::string text = state_line(result.at_state);
+  std::string text = state_line(result.at_state) + workpiece_line(result);
   text += poses_text(result.machine, result.poses, result.corrected, result.leave_out_factor);
   if (result.has_reversals) text += "reversal values are not in these commands: a pose has no direction of approach\n";
   return text;
@@ -65,6 +111,7 @@ nlohmann::ordered_json corrected_commands_json(const CorrectedCommands& result, 
                                                bool written) {
   nlohmann::ordered_json json = poses_json(result.machine, result.poses, result.corrected, output, written);
   add_state(result.at_state, json);
+  add_workpiece(result, json);
   return json;
 }
 

@@ -106,6 +106,7 @@ FoundValues found_values(const Study& study, const StudyResult& result) {
   const ErrorSet& errors = identified.errors;
   const Estimates estimates(identified);
   FoundValues found;
+  found.expansions = found_expansions(study, result);
   std::size_t index = 0;
   for (const ErrorMotion& motion : errors.motions) index += motion.coefficients.size();
   for (const LocationError& location : errors.locations) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/study/identified_expansions.h"
 
 namespace abbe {
 
@@ -45,6 +46,7 @@ struct FoundSetup {
 
 /// What an identification has found besides the error motions.
 struct FoundValues {
+  std::vector<FoundExpansion> expansions;
   std::vector<FoundNumber> locations, reversals;
   std::vector<FoundNumber> tool;               ///< three components of its error, or empty
   std::optional<Eigen::Vector3d> tool_offset;  ///< mm, with that error

@@ -40,6 +40,44 @@ std::string number_text(const FoundNumber& number, bool is_machine) {
   return text;
 }
 
+std::string expansion_words(const FoundExpansion& found) {
+  std::string text = fmt::format("    scale of {:<15} {:>16.3f} um/(m K)  ", found.axis, 1e6 * found.coefficient);
+  const bool exact = found.stated.knowledge == Knowledge::exact;
+  if (exact) return text + fmt::format("as stated; per K of {}\n", found.state);
+  text += found.is_fixed ? "by convention" : fmt::format("{:.3g} um/(m K)", 1e6 * found.expanded_uncertainty);
+  if (found.stated.knowledge == Knowledge::within) {
+    text += fmt::format(", stated {:.6g}, U {:.3g}", 1e6 * found.stated.value, 2e6 * found.stated.standard_uncertainty);
+  }
+  text += fmt::format("; per K of {}", found.state);
+  if (!found.correlated.empty())
+    text += fmt::format(", correlation {:.2f} with {}", found.correlation, found.correlated);
+  return text + "\n";
+}
+
+nlohmann::ordered_json expansions_json(const std::vector<FoundExpansion>& list) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const FoundExpansion& found : list) {
+    nlohmann::ordered_json json;
+    json["axis"] = found.axis;
+    json["state"] = found.state;
+    json["fixed_point_mm"] = found.fixed_point;
+    json["coefficient_um_per_m_K"] = 1e6 * found.coefficient;
+    if (found.is_fixed) json["by_convention"] = true;
+    if (found.expanded_uncertainty > 0) {
+      json["expanded_uncertainty_um_per_m_K"] = 1e6 * found.expanded_uncertainty;
+    }
+    if (found.stated.knowledge != Knowledge::open) json["stated_um_per_m_K"] = 1e6 * found.stated.value;
+    if (found.stated.knowledge == Knowledge::within) {
+      json["stated_standard_uncertainty_um_per_m_K"] = 1e6 * found.stated.standard_uncertainty;
+    }
+    if (!found.correlated.empty()) {
+      json["largest_correlation"] = {{"with", found.correlated}, {"value", found.correlation}};
+    }
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
 /// What nothing was estimated of has no uncertainty; that is not an uncertainty of zero.
 bool is_estimated(const Eigen::Vector3d& expanded) { return expanded.cwiseAbs().maxCoeff() > 0; }
 
@@ -135,11 +173,13 @@ std::string names_of(const Identification& identified, const GaugeConstraint& co
 
 std::string found_values_text(const FoundValues& found, const char* shows_all) {
   std::string text;
-  const bool of_machine = !found.locations.empty() || !found.reversals.empty() || !found.tool.empty();
+  const bool of_machine =
+      !found.expansions.empty() || !found.locations.empty() || !found.reversals.empty() || !found.tool.empty();
   if (!of_machine && found.setups.empty()) return text;
   text += "\nidentified values, U: expanded uncertainty (k = 2)\n";
   if (of_machine) {
     text += fmt::format("  machine                  {:>19}       {}\n", "value", "U");
+    for (const FoundExpansion& one : found.expansions) text += expansion_words(one);
     for (const auto* list : {&found.locations, &found.reversals, &found.tool}) {
       for (const FoundNumber& number : *list) text += number_text(number, true);
     }
@@ -162,6 +202,7 @@ std::string found_values_text(const FoundValues& found, const char* shows_all) {
 nlohmann::ordered_json found_values_json(const FoundValues& found) {
   nlohmann::ordered_json json;
   json["coverage_factor"] = 2;
+  if (!found.expansions.empty()) json["expansions"] = expansions_json(found.expansions);
   json["location_errors"] = numbers_json(found.locations, true);
   json["reversals"] = numbers_json(found.reversals, true);
   if (found.tool_offset) {

@@ -10,6 +10,7 @@
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/study/identified_expansions.h"
 #include "abbe/study/setup_drifts.h"
 #include "abbe/study/time_blocks.h"
 
@@ -96,10 +97,12 @@ void require_read_states(const Machine& machine, const ErrorSet& errors, const C
 /// @param all_found  every prior of the study has a parameter; lower orders than the study's may not have them all
 void add_priors(const Study& study, const Campaign& campaign, bool all_found, Problem& problem) {
   const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
+  const std::vector<std::uint8_t> of_expansion = are_of_expansions(*study.identification, problem.errors);
   for (const ParameterPrior& prior : study.identification->priors) {
     std::size_t found = 0;
     for (const EstimatedParameter& parameter : parameters) {
       if (!matches_pattern(parameter.name, prior.parameters)) continue;
+      if (parameter.id.is_machine() && of_expansion[parameter.id.index] != 0) continue;
       ++found;
       if (parameter.is_angle != prior.is_angle) {
         throw InputError(
@@ -116,6 +119,7 @@ void add_priors(const Study& study, const Campaign& campaign, bool all_found, Pr
                        "a name such as " + (parameters.empty() ? std::string("EXX[P1]") : parameters.front().name));
     }
   }
+  add_expansion_priors(*study.identification, problem);
   for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
     for (const KnownUnknown& known : campaign.setups[s].known_unknowns()) {
       problem.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
@@ -132,6 +136,16 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
   std::optional<ErrorSet> initial;
   if (plan.initial_errors) initial = read_errors(*plan.initial_errors, study.machine, StatesOfErrors::allowed).errors;
   for (const IdentifiedMotion& identified : plan.motions) {
+    if (identified.expansion) {
+      // Known over the whole length of the scale, whatever was measured.
+      errors.motions.push_back({identified.axis,
+                                identified.component,
+                                identified.basis,
+                                {0, identified.expansion->coefficient.value},
+                                {},
+                                identified.state});
+      continue;
+    }
     const Axis& axis = study.machine.axes[identified.axis];
     const std::vector<double> positions = measured_positions(campaign, identified.axis);
     ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}, identified.state};
@@ -204,6 +218,7 @@ StudyModel model_of(const Study& study, const Campaign& campaign, bool all_prior
         std::remove_if(parameters.begin(), parameters.end(), [&](std::size_t p) { return p >= first_tool; }),
         parameters.end());
   }
+  keep_expansion_estimates(plan, model.problem);
   mark_held_out(study, campaign, model.problem);
   if (plan.estimate_block_noise) mark_noise_blocks(plan.noise_block_s, campaign, model.problem);
   add_priors(study, campaign, all_priors, model.problem);

@@ -18,6 +18,7 @@
 #include "abbe/instruments/path_plan.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/study/campaign.h"
+#include "abbe/study/identified_expansions.h"
 #include "abbe/study/planned_readings.h"
 #include "abbe/study/planning.h"
 
@@ -117,10 +118,14 @@ PlanningModel::PlanningModel(const Study& study, const ErrorSet* errors) : study
   parameters_ = estimated_parameters(empty);
   find_states();
   Problem with_priors = empty;
+  const std::vector<std::uint8_t> of_expansion = are_of_expansions(*study.identification, empty.errors);
   for (const ParameterPrior& prior : study.identification->priors)
-    for (const EstimatedParameter& parameter : parameters_)
+    for (const EstimatedParameter& parameter : parameters_) {
+      if (parameter.id.is_machine() && of_expansion[parameter.id.index] != 0) continue;
       if (matches_pattern(parameter.name, prior.parameters) && parameter.is_angle == prior.is_angle)
         with_priors.priors.push_back({parameter.id, prior.value, prior.standard_uncertainty});
+    }
+  add_expansion_priors(*study.identification, with_priors);
   for (std::size_t s = 0; s < devices_.size(); ++s)
     for (const KnownUnknown& known : known_unknowns_of(*devices_[s]))
       with_priors.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
@@ -186,6 +191,7 @@ Problem PlanningModel::problem(const std::vector<InstrumentReadings>& readings) 
   Problem result = estimate_everything(study_.machine, errors_, observations);
   if (!study_.identification->tool_offset)
     result.machine_parameters.resize(result.machine_parameters.size() - 3);  // they come last
+  keep_expansion_estimates(*study_.identification, result);
   return result;
 }
 

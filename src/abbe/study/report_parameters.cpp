@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -86,10 +87,13 @@ nlohmann::ordered_json report_error_motions(const Machine& machine, const Identi
     const Axis& axis = machine.axes[motion.axis];
     const bool rotary = axis.kind == AxisKind::rotary;
     const bool angle = is_rotation(motion.component);
+    // The functions of an expansion go on beyond the travel.
+    const double from = rotary ? basis.from : std::max(basis.from, axis.travel_min);
+    const double to = rotary ? basis.to : std::min(basis.to, axis.travel_max);
     std::vector<double> position, value, band, true_value;
     Eigen::VectorXd functions(size);
     for (std::size_t i = 0; i < kPoints; ++i) {
-      const double q = basis.from + (basis.to - basis.from) * static_cast<double>(i) / (kPoints - 1);
+      const double q = from + (to - from) * static_cast<double>(i) / (kPoints - 1);
       basis.values(q, motion.coefficients, {functions.data(), basis.size()});
       const double variance = functions.dot(covariance.block(first, first, size, size) * functions);
       position.push_back(for_drawing(q / position_unit(axis)));

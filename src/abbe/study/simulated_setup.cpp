@@ -14,6 +14,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/study/identified_expansions.h"
 #include "abbe/study/planned_readings.h"
 #include "abbe/study/setup_drifts.h"
 
@@ -112,6 +113,7 @@ ErrorSet true_errors(const Study& study) {
     RandomStream random(generator.seed, kReversalStream + axis);
     if (size > 0) errors.reversals.push_back({axis, -size * random.uniform(0.5, 1.5), 0});
   }
+  add_true_expansions(study, generator.seed, errors);
   return errors;
 }
 

@@ -10,6 +10,7 @@
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/study/coverage.h"
+#include "abbe/study/identified_expansions.h"
 #include "abbe/study/setup_drifts.h"
 #include "abbe/study/state_ranges.h"
 #include "abbe/verify/known_range.h"
@@ -23,6 +24,15 @@ Study with_chosen_terms(const Study& study, const StudyResult& result) {
   Study chosen = study;
   if (result.terms) chosen.identification = result.terms->plan;
   return chosen;
+}
+
+/// Whether all errors with the state of a column are expansions of which something is known beforehand.
+bool is_known_beforehand(const Study& study, const StudyResult& result, const std::string& column) {
+  const IdentificationPlan& plan = result.terms ? result.terms->plan : *study.identification;
+  for (std::size_t j = 0; j < study.machine.states.size(); ++j) {
+    if (state_column(study.machine.states[j]) == column) return has_known_expansions_only(plan, j);
+  }
+  return false;
 }
 
 }  // namespace
@@ -124,6 +134,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
   }
   for (const CoveredState& state : covered_states(study, result)) {
     if (state.to - state.from > 1e-9 * (1 + std::abs(state.to))) continue;
+    if (is_known_beforehand(study, result, state.column)) continue;
     result.warnings.push_back(fmt::format(
         "{} is {:.6g} at all readings: errors with this state cannot be told from those without it, and "
         "what is stated of them apart from each other is a convention; readings at another value would show "

@@ -7,6 +7,7 @@
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/levenberg_marquardt.h"
 #include "abbe/study/campaign.h"
+#include "abbe/study/identified_expansions.h"
 
 namespace abbe {
 namespace {
@@ -60,7 +61,11 @@ std::vector<double> true_parameters(const ErrorSet& truth, const ErrorSet& model
 std::optional<ErrorSet> truth_in_gauge(const Study& study, const StudyResult& result) {
   if (!result.campaign.truth) return std::nullopt;
   Problem problem = result.model.problem;
-  const std::vector<double> real = true_parameters(*result.campaign.truth, problem.errors);
+  std::vector<double> real = true_parameters(*result.campaign.truth, problem.errors);
+  // What a thermometer is wrong by is no error of the machine beside its other terms.
+  for (const ExpansionParameters& one : expansion_parameters(*study.identification, problem.errors)) {
+    if (one.identified->expansion->is_temperature) real[one.coefficient - 1] = real[one.coefficient] = 0;
+  }
   std::erase_if(problem.priors, [](const Prior& prior) { return !prior.parameter.is_machine(); });
   for (Prior& prior : problem.priors) prior.value = real[prior.parameter.index];
   for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {

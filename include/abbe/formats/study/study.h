@@ -19,6 +19,7 @@
 #include "abbe/instruments/instrument.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/instruments/path_plan.h"
+#include "abbe/instruments/setup_quantity.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
@@ -119,6 +120,13 @@ struct Setup {
   std::optional<DriftPlan> drift{};          ///< absent: it stands still
 };
 
+/// What is known before the readings of the term of an expansion, whose second coefficient alone is identified
+/// (abbe/errors/expansion.h).
+struct IdentifiedExpansion {
+  SetupNumber coefficient;      ///< of the error motion, mm (per K of its state), with the sign of the axis
+  bool is_temperature = false;  ///< the term without a state, for the uncertainty of the temperature
+};
+
 /// One error motion to be identified.
 struct IdentifiedMotion {
   std::size_t axis = 0;
@@ -128,6 +136,7 @@ struct IdentifiedMotion {
   int smallest_order = 0;        ///< equal to basis.order unless the order is to be selected
   std::size_t state = kNoState;  ///< index into Machine::states
   bool optional = false;         ///< with a state: only taken where held-out blocks of time speak for it
+  std::optional<IdentifiedExpansion> expansion{};  ///< of the scale; its basis is that of the expansion
 };
 
 struct IdentifiedLocation {

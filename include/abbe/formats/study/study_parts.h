@@ -24,7 +24,13 @@ ChannelPlan read_channel_plan(TomlTable& table, const std::filesystem::path& fol
 std::optional<DriftPlan> read_drift(TomlTable& setup, bool simulated);
 
 PlanningStudy read_planning(TomlTable& table, const Machine& machine, const std::filesystem::path& folder);
-IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
+/// @param simulation  of the study, or null
+IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine,
+                                       const Simulation* simulation);
+
+/// Tables `expansion` of what is identified; appends their terms to the motions of the plan.
+void read_identified_expansions(TomlTable& identify, const Machine& machine, const Simulation* simulation,
+                                IdentificationPlan& plan);
 
 /// What a plan may name: targets ("reflectors" of a tracker, "items" of other instruments) and stations (tracker only).
 struct PlanNames {

@@ -21,6 +21,7 @@ enum class Quantity {
   temperature,             ///< inside degC
   temperature_difference,  ///< inside K
   temperature_rate,        ///< inside K/s
+  expansion,               ///< inside 1/K; coefficient of thermal expansion
 };
 
 /// A unit as written at the end of a name: inside value = text * 10^decimal_shift * factor.

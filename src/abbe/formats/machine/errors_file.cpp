@@ -9,10 +9,12 @@
 
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/errors/error_states.h"
+#include "abbe/errors/expansion.h"
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/covariance_file.h"
 #include "abbe/formats/machine/error_fields.h"
+#include "abbe/formats/machine/expansion_fields.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
@@ -65,6 +67,21 @@ std::size_t read_state_of_error(TomlTable& table, const Machine& machine, States
                "errors without states");
   }
   return state;
+}
+
+/// Tables `expansion`: error motions like the others, which follow those of the file. @throws InputError
+void read_expansions(TomlTable& root, const Machine& machine, StatesOfErrors states, ErrorSet& errors) {
+  std::vector<ScaleExpansion> expansions;
+  for (TomlTable& table : root.tables("expansion")) {
+    if (table.has("state")) read_state_of_error(table, machine, states);
+    expansions.push_back(read_expansion(table, machine));
+    for (std::size_t i = 0; i + 1 < expansions.size(); ++i) {
+      if (expansions[i].axis != expansions.back().axis || expansions[i].state != expansions.back().state) continue;
+      table.fail("axis", "this axis has an expansion with this state already", "one for each scale");
+    }
+    const std::vector<ErrorMotion> terms = expansion_terms(machine, expansions.back());
+    errors.motions.insert(errors.motions.end(), terms.begin(), terms.end());
+  }
 }
 
 /// What no error of an axis is, and from where on a computation need not have a result.
@@ -179,9 +196,9 @@ std::string state_line(const Machine& machine, std::size_t state) {
 std::string motion_text(const Machine& machine, const ErrorMotion& motion) {
   const Axis& axis = machine.axes[motion.axis];
   const Unit& unit = error_unit(motion.component);
-  std::string text =
-      fmt::format("\n[[motion]]\nname = \"{}\"\n{}{}", error_motion_name(machine, motion.axis, motion.component),
-                  state_line(machine, motion.state), basis_text(motion.basis, axis));
+  std::string text = fmt::format(
+      "\n[[motion]]\nname = \"{}\"{}\n{}{}", error_motion_name(machine, motion.axis, motion.component),
+      expansion_comment(machine, motion), state_line(machine, motion.state), basis_text(motion.basis, axis));
   if (is_table(motion.basis.kind)) {
     text += axis.kind == AxisKind::rotary
                 ? toml_angles("at", motion.basis.nodes)
@@ -259,6 +276,7 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     table.finish();
     errors.motions.push_back(std::move(motion));
   }
+  read_expansions(root, machine, states, errors);
   for (TomlTable& table : root.tables("location")) {
     LocationError location;
     read_name(table, machine, true, location.axis, location.component);

@@ -11,6 +11,7 @@
 
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/errors/error_states.h"
+#include "abbe/errors/expansion.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/nearest_word.h"
 #include "abbe/formats/text/number_text.h"
@@ -222,9 +223,12 @@ void add_ageing(const Machine& machine, double days, ErrorsFile& file) {
     file.covariance(at, at) += intensity * intensity * seconds;
     if (uncertainty != nullptr) *uncertainty = std::sqrt(file.covariance(at, at));
   };
-  for (ErrorMotion& motion : file.errors.motions) {
+  for (std::size_t m = 0; m < file.errors.motions.size(); ++m) {
+    ErrorMotion& motion = file.errors.motions[m];
+    // What a thermometer is wrong by does not age beside the error motion itself.
+    const bool wanders = motion.state == kNoState && !is_expansion_temperature(machine, file.errors, m);
     motion.standard_uncertainty.resize(motion.coefficients.size(), 0.0);
-    for (double& u : motion.standard_uncertainty) wander(motion.state == kNoState, &u);
+    for (double& u : motion.standard_uncertainty) wander(wanders, &u);
   }
   for (LocationError& location : file.errors.locations) {
     wander(location.state == kNoState, &location.standard_uncertainty);

@@ -184,7 +184,10 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
       table.fail("name", fmt::format("another set-up is called \"{}\"", study.setups[i].name), "different names");
     }
   }
-  if (auto table = root.optional_table("identify")) study.identification = read_identification(*table, folder, machine);
+  if (auto table = root.optional_table("identify")) {
+    study.identification =
+        read_identification(*table, folder, machine, study.simulation ? &*study.simulation : nullptr);
+  }
   if (auto table = root.optional_table("map")) study.map = read_map(*table, folder, machine);
   if (auto table = root.optional_table("report")) study.report = read_report(*table, folder);
   root.finish();

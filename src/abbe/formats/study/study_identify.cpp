@@ -259,7 +259,8 @@ bool matches_pattern(std::string_view text, std::string_view pattern) {
   return in == pattern.size();
 }
 
-IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine) {
+IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine,
+                                       const Simulation* simulation) {
   IdentificationPlan plan;
   for (TomlTable& motion : table.tables("motion")) {
     for (IdentifiedMotion& identified : read_motions(motion, machine)) {
@@ -277,6 +278,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
       plan.motions.push_back(std::move(identified));
     }
   }
+  read_identified_expansions(table, machine, simulation, plan);
   read_locations(table, machine, "locations", kNoState, false, plan);
   for (TomlTable& location : table.tables("location")) {
     const std::size_t state = read_identified_state(location, machine);
@@ -313,7 +315,10 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
   table.text_or("held_out_file", "");
   plan.monte_carlo = static_cast<int>(table.integer_or("monte_carlo", 0, 0, 10'000'000));
   table.finish();
-  if (plan.motions.empty() && plan.locations.empty() && !plan.tool_offset) {
+  const bool no_motion = std::all_of(plan.motions.begin(), plan.motions.end(), [](const IdentifiedMotion& motion) {
+    return motion.expansion && motion.expansion->coefficient.knowledge == Knowledge::exact;
+  });
+  if (no_motion && plan.locations.empty() && !plan.tool_offset) {
     table.fail("", "nothing is to be identified", "[[identify.motion]], locations or tool_offset = true");
   }
   return plan;

@@ -27,8 +27,9 @@ constexpr std::array<Unit, 4> kLengthAngle = {
     {{"mm_rad", 0, 1}, {"um_urad", -9, 1}, {"um_arcsec", -3, kArcsec}, {"mm_arcsec", 0, kArcsec}}};
 constexpr std::array<Unit, 1> kTemperature = {{{"degC", 0, 1}}};
 constexpr std::array<Unit, 1> kTemperatureDifference = {{{"K", 0, 1}}};
+constexpr std::array<Unit, 1> kExpansion = {{{"um_per_m_K", -6, 1}}};
 constexpr std::array<Unit, 1> kTemperatureRate = {{{"K_per_h", 0, 1.0 / 3600}}};
-constexpr std::array<Quantity, 11> kQuantities = {Quantity::dimensionless,
+constexpr std::array<Quantity, 12> kQuantities = {Quantity::dimensionless,
                                                   Quantity::length,
                                                   Quantity::angle,
                                                   Quantity::length_per_length,
@@ -38,7 +39,8 @@ constexpr std::array<Quantity, 11> kQuantities = {Quantity::dimensionless,
                                                   Quantity::length_angle,
                                                   Quantity::temperature,
                                                   Quantity::temperature_difference,
-                                                  Quantity::temperature_rate};
+                                                  Quantity::temperature_rate,
+                                                  Quantity::expansion};
 
 /// Edits from one spelling to the other: insert, remove, replace, exchange neighbours (1 each), change case (0.5).
 double spelling_distance(std::string_view a, std::string_view b) {
@@ -87,6 +89,8 @@ std::span<const Unit> units_of(Quantity quantity) {
       return kTemperatureDifference;
     case Quantity::temperature_rate:
       return kTemperatureRate;
+    case Quantity::expansion:
+      return kExpansion;
   }
   assert(false);
   return kDimensionless;
@@ -127,6 +131,8 @@ std::string_view quantity_words(Quantity quantity) {
       return "a temperature difference";
     case Quantity::temperature_rate:
       return "a rate of change of a temperature";
+    case Quantity::expansion:
+      return "a coefficient of expansion";
   }
   assert(false);
   return "";

@@ -1,0 +1,54 @@
+#include "abbe/formats/machine/expansion_fields.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "abbe/formats/machine/error_fields.h"
+#include "abbe/machine/state.h"
+
+namespace abbe {
+
+ScaleExpansion read_expansion_place(TomlTable& table, const Machine& machine) {
+  ScaleExpansion expansion;
+  const std::string axis = table.text("axis");
+  expansion.axis = machine.find_axis(axis);
+  if (expansion.axis == Machine::npos) {
+    table.fail("axis", fmt::format("\"{}\" is not an axis of this machine", axis), axis_names(machine));
+  }
+  const std::string state = table.text("state");
+  expansion.state = find_state(machine, state);
+  if (expansion.state == kNoState) {
+    table.fail("state", fmt::format("\"{}\" is not a state of this machine", state),
+               "a measured state with the unit degC in the machine file");
+  }
+  const ExpansionProblem problem = expansion_problem(machine, expansion.axis, expansion.state);
+  if (!problem.problem.empty()) table.fail(problem.field, problem.problem, problem.expected);
+  expansion.fixed_point = table.number_or("fixed_point", Quantity::length, 0);
+  expansion.temperature_uncertainty =
+      table.size_or("temperature_standard_uncertainty", Quantity::temperature_difference, 0);
+  return expansion;
+}
+
+void refuse_large_expansion(const TomlTable& table, double coefficient) {
+  if (std::abs(coefficient) <= kLargestExpansion) return;
+  table.fail_quantity("coefficient", Quantity::expansion, "is too large", "at most 1000 um/(m K); steel has 11");
+}
+
+ScaleExpansion read_expansion(TomlTable& table, const Machine& machine) {
+  ScaleExpansion expansion = read_expansion_place(table, machine);
+  expansion.coefficient = table.number("coefficient", Quantity::expansion);
+  refuse_large_expansion(table, expansion.coefficient);
+  expansion.standard_uncertainty = table.size_or("coefficient_standard_uncertainty", Quantity::expansion, 0);
+  table.finish();
+  return expansion;
+}
+
+std::string expansion_comment(const Machine& machine, const ErrorMotion& term) {
+  const std::optional<ScaleExpansion> expansion = expansion_of(machine, term);
+  if (!expansion) return {};
+  return fmt::format("  # scale of {}: {:.6g} um/(m K), fixed at {:.6g} mm", machine.axes[term.axis].name,
+                     1e6 * expansion->coefficient, expansion->fixed_point);
+}
+
+}  // namespace abbe

@@ -1,0 +1,130 @@
+#include "abbe/formats/machine/expansion_fields.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "abbe/errors/error_states.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/state_option.h"
+#include "abbe/formats/text/message_of.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+
+Machine saw_with_scales() {
+  return parse_machine(R"(name = "saw"
+chain = "w X' b Z C t"
+[axis.X]
+travel_mm = [0, 760]
+[axis.Z]
+travel_mm = [0, 400]
+[axis.C]
+endless = true
+[state.scale_x]
+kind = "measured"
+unit = "degC"
+[state.load]
+kind = "measured"
+unit = "kg"
+)",
+                       "saw.machine.toml");
+}
+
+ErrorsFile saw_errors(const std::string& text, StatesOfErrors states = StatesOfErrors::allowed) {
+  return parse_errors(text, "saw.errors.toml", saw_with_scales(), states);
+}
+
+std::string refusal(const std::string& change, StatesOfErrors states = StatesOfErrors::allowed) {
+  return message_of([&] { saw_errors("[[expansion]]\n" + change, states); });
+}
+
+const std::string kExpansion = R"([[expansion]]
+axis = "X"
+state = "scale_x"
+coefficient_um_per_m_K = 8.3
+coefficient_standard_uncertainty_um_per_m_K = 0.5
+fixed_point_mm = 120
+)";
+
+TEST(ExpansionsInErrorsFiles, AreErrorMotionsWithAState) {
+  // X' carries the workpiece, so what makes it move too far moves the body in -X.
+  const ErrorsFile file = saw_errors(kExpansion);
+  const ErrorsFile written_out = saw_errors(R"([[motion]]
+name = "EXX"
+state = "scale_x"
+basis = "monomial"
+order = 1
+from_mm = -880
+to_mm = 1120
+coefficients_um = [0, -8.3]
+standard_uncertainty_um = [0, 0.5]
+)");
+  ASSERT_EQ(file.errors.motions.size(), 1U);
+  const ErrorMotion &found = file.errors.motions[0], &expected = written_out.errors.motions[0];
+  EXPECT_EQ(found.basis, expected.basis);
+  EXPECT_EQ(found.state, expected.state);
+  EXPECT_NEAR(found.coefficients[1], expected.coefficients[1], 1e-12 * 8.3e-3);
+  EXPECT_NEAR(found.standard_uncertainty[1], expected.standard_uncertainty[1], 1e-12 * 0.5e-3);
+  EXPECT_EQ(covariance_of(file).rows(), 5);
+  const Machine saw = saw_with_scales();
+  EXPECT_EQ(parameter_names(saw, file.errors)[1], "EXX*scale_x[s^1]");
+}
+
+TEST(ExpansionsInErrorsFiles, ReadBackTheSameBitsAndSayWhatTheyAre) {
+  const Machine saw = saw_with_scales();
+  ErrorsFile file = saw_errors(kExpansion + "temperature_standard_uncertainty_K = 0.2\n");
+  ASSERT_EQ(file.errors.motions.size(), 2U);
+  const std::string text = errors_text(saw, file);
+  EXPECT_THAT(text, HasSubstr("name = \"EXX\"  # scale of X: 8.3 um/(m K), fixed at 120 mm"));
+  EXPECT_EQ(saw_errors(text).errors.motions, file.errors.motions);
+  // Ageing is that of the error motion and not of the thermometer.
+  file.ageing.length = 1e-3;
+  add_ageing(saw, 1, file);
+  EXPECT_EQ(file.covariance(2, 2), 0);
+}
+
+TEST(ExpansionsInErrorsFiles, AreTakenAtAStateWithTheirUncertainty) {
+  const Machine saw = saw_with_scales();
+  const ErrorsFile file = saw_errors(kExpansion + "temperature_standard_uncertainty_K = 0.2\n");
+  const ErrorsFile warm = at_given_states(saw, file, std::vector<double>{26, std::nan("")}, "saw.errors.toml");
+  EXPECT_FALSE(has_states(warm.errors));
+  const double actual = warm.errors.evaluate(0, 620)[0];
+  EXPECT_NEAR(actual, -8.3e-6 * 6 * 500, 1e-15);
+  // At s = 0.5: u = sqrt(6^2 0.5^2 + (8.3^2 + 0.5^2) 0.2^2) / 2 um.
+  double variance = 0;
+  for (const ErrorMotion& motion : warm.errors.motions) variance += std::pow(0.5 * motion.standard_uncertainty[1], 2);
+  EXPECT_NEAR(1e3 * std::sqrt(variance), 0.5 * std::sqrt(9 + 69.14 * 0.04), 1e-9);
+}
+
+TEST(ExpansionsInErrorsFiles, WhatIsWrongIsNamed) {
+  const std::string good = "axis = \"X\"\nstate = \"scale_x\"\n";
+  EXPECT_THAT(refusal(good), HasSubstr("expansion[1].coefficient_um_per_m_K: is missing"));
+  EXPECT_THAT(refusal(good + "coefficient_um = 8\n"), HasSubstr("coefficient_um_per_m_K"));
+  EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8\ncoefficient_standard_uncertainty_um_per_m_K = -1\n"),
+              HasSubstr("coefficient_standard_uncertainty_um_per_m_K: is negative"));
+  EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8\ntemperature_standard_uncertainty_K = -1\n"),
+              HasSubstr("temperature_standard_uncertainty_K: is negative"));
+  EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8000\n"), HasSubstr("is too large"));
+  EXPECT_THAT(refusal("axis = \"X\"\ncoefficient_um_per_m_K = 8\n"), HasSubstr("expansion[1].state"));
+  EXPECT_THAT(refusal("axis = \"X\"\nstate = \"scale_y\"\ncoefficient_um_per_m_K = 8\n"),
+              HasSubstr("\"scale_y\" is not a state of this machine"));
+  EXPECT_THAT(refusal("axis = \"X\"\nstate = \"load\"\ncoefficient_um_per_m_K = 8\n"),
+              HasSubstr("load is not a temperature; expected a measured state with the unit degC"));
+  EXPECT_THAT(refusal("axis = \"C\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = 8\n"),
+              HasSubstr("the scale of a rotary axis does not expand"));
+  EXPECT_THAT(refusal("axis = \"Y\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = 8\n"),
+              HasSubstr("\"Y\" is not an axis of this machine"));
+  EXPECT_THAT(message_of([&] { saw_errors(kExpansion + kExpansion); }), HasSubstr("expansion with this state already"));
+  EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8\n", StatesOfErrors::refused),
+              HasSubstr("this error depends on scale_x, which is not taken into account here"));
+}
+
+}  // namespace
+}  // namespace abbe
