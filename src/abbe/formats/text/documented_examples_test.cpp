@@ -47,9 +47,11 @@ TEST(DocumentedExamples, AreAccepted) {
   ASSERT_NE(errors.find(covariance), std::string::npos);
   errors.erase(errors.find(covariance), covariance.size());
   const Machine with_state =
-      parse_machine(toml[0] + "[state.ambient]\nkind = \"measured\"\nunit = \"degC\"\n", "state");
+      parse_machine(toml[0] + "[state.ambient]\nkind = \"measured\"\nunit = \"degC\"\n" +
+                        "[state.scale_x]\nkind = \"measured\"\nunit = \"degC\"\n",
+                    "state");
   const ErrorsFile contents = parse_errors(errors, folder / "a.errors.toml", with_state, StatesOfErrors::allowed);
-  EXPECT_EQ(contents.errors.motions.size(), 6U);
+  EXPECT_EQ(contents.errors.motions.size(), 8U);
   EXPECT_EQ(contents.errors.motions[4].basis.nodes.size(), 2U);
 
   EXPECT_EQ(parse_measurements(csv[0], "csv", machine).readings.count(), 2U);
@@ -69,7 +71,7 @@ TEST(DocumentedExamples, AreAccepted) {
       machine_text(with_state) + "[state.column]\nkind = \"lag\"\nof = \"ambient\"\ntime_constant_s = 2400\n", "lag");
   const Study simulated = parse_study(toml[3], "a.study.toml", with_lag);
   EXPECT_EQ(simulated.setups[0].plans.size(), 4U);
-  EXPECT_EQ(simulated.identification->motions.size(), 13U);
+  EXPECT_EQ(simulated.identification->motions.size(), 15U);
   const Study measured = parse_study(toml[4], "b.study.toml", machine);
   EXPECT_TRUE(measured.setups[0].noise_from_data);
   const Study bar = parse_study(toml[5], "c.study.toml", machine);
