@@ -105,7 +105,7 @@ TEST(ExpansionsInErrorsFiles, AreTakenAtAStateWithTheirUncertainty) {
 
 TEST(ExpansionsInErrorsFiles, WhatIsWrongIsNamed) {
   const std::string good = "axis = \"X\"\nstate = \"scale_x\"\n";
-  EXPECT_THAT(refusal(good), HasSubstr("expansion[1].coefficient_um_per_m_K: is missing"));
+  EXPECT_THAT(refusal(good), HasSubstr("expansion[1].coefficient_um_per_m_K: missing"));
   EXPECT_THAT(refusal(good + "coefficient_um = 8\n"), HasSubstr("coefficient_um_per_m_K"));
   EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8\ncoefficient_standard_uncertainty_um_per_m_K = -1\n"),
               HasSubstr("coefficient_standard_uncertainty_um_per_m_K: is negative"));

@@ -10,12 +10,12 @@
 #include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/machine/state.h"
+#include "abbe/verify/thermal/length_temperature.h"
 
 namespace abbe {
 namespace {
 
 constexpr const char* kExpansionOption = "--workpiece-expansion-um-per-m-K";
-constexpr double kReferenceTemperature = 20;  // degC, ISO 1:2022
 constexpr double kMostKelvin = 1000;
 
 void refuse_out_of_range(const char* option, double value, double least, double most, const char* unit) {

@@ -46,10 +46,9 @@ TEST(DocumentedExamples, AreAccepted) {
   const std::string covariance = "covariance = \"a.covariance.csv\"";
   ASSERT_NE(errors.find(covariance), std::string::npos);
   errors.erase(errors.find(covariance), covariance.size());
-  const Machine with_state =
-      parse_machine(toml[0] + "[state.ambient]\nkind = \"measured\"\nunit = \"degC\"\n" +
-                        "[state.scale_x]\nkind = \"measured\"\nunit = \"degC\"\n",
-                    "state");
+  const Machine with_state = parse_machine(toml[0] + "[state.ambient]\nkind = \"measured\"\nunit = \"degC\"\n" +
+                                               "[state.scale_x]\nkind = \"measured\"\nunit = \"degC\"\n",
+                                           "state");
   const ErrorsFile contents = parse_errors(errors, folder / "a.errors.toml", with_state, StatesOfErrors::allowed);
   EXPECT_EQ(contents.errors.motions.size(), 8U);
   EXPECT_EQ(contents.errors.motions[4].basis.nodes.size(), 2U);
