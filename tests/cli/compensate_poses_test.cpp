@@ -205,5 +205,50 @@ TEST_F(CompensatePoses, WhatIsLeftOutIsSmallTogetherAndInWhatIsLeft) {
   EXPECT_LT(correlated["largest_position_left_um"].get<double>(), 1e-6);
 }
 
+class CompensateWarmPart : public CommandTest {
+ protected:
+  const std::string example = ABBE_SOURCE_DIR "/examples/expansion/";
+
+  CommandResult part(const std::vector<std::string>& more, const std::string& poses = {}) const {
+    std::vector<std::string> arguments = {"compensate",
+                                          "poses",
+                                          poses.empty() ? example + "part.csv" : poses,
+                                          "--machine",
+                                          example + "mill.machine.toml",
+                                          "--errors",
+                                          example + "truth.errors.toml"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return abbe(arguments);
+  }
+};
+
+TEST_F(CompensateWarmPart, TheScaleTheSpindleAndThePartAreCorrected) {
+  const CommandResult result =
+      part({"--dry-run", "--json", "--workpiece-expansion-um-per-m-K", "23.4", "--workpiece-state", "part",
+            "--u-workpiece-expansion-um-per-m-K", "1", "--workpiece-fixed-mm", "0", "0", "120"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["workpiece"]["state"], "part");
+  EXPECT_NEAR(json["workpiece"]["coefficient_um_per_m_K"].get<double>(), 23.4, 1e-9);
+  EXPECT_EQ(json["workpiece"]["temperatures_degC"], (nlohmann::json{22.4, 22.4}));
+  // Y has no errors: 400 mm of the part grow by 23.4 um/(m K) and 2.4 K.
+  EXPECT_NEAR(json["axes"][1]["largest_um"].get<double>(), 0.4 * 23.4 * 2.4, 1e-6);
+  // Z: 1.9 um/K and 11.5 K of the spindle; the part does not move in its plane.
+  EXPECT_NEAR(json["axes"][2]["largest_um"].get<double>(), 1.9 * 11.5, 1e-6);
+  EXPECT_LT(json["largest_position_left_um"].get<double>(), 1e-6);
+}
+
+TEST_F(CompensateWarmPart, ItsTemperatureMustBeKnown) {
+  const std::vector<std::string> part_of_steel = {"--dry-run", "--workpiece-expansion-um-per-m-K", "11.5",
+                                                  "--workpiece-state", "part"};
+  folder.write("cold.csv", "X_mm,Y_mm,Z_mm,scale_x_degC,spindle_degC\n100,100,120,24,31\n");
+  const CommandResult none = part(part_of_steel, "cold.csv");
+  EXPECT_EQ(none.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(none.err, HasSubstr("part_degC: the temperature of the workpiece is not given at all poses; expected a "
+                                  "column with this name, or --state part_degC=VALUE"));
+  EXPECT_THAT(part({"--dry-run", "--workpiece-state", "part"}).err,
+              HasSubstr("--workpiece-expansion-um-per-m-K: is missing"));
+}
+
 }  // namespace
 }  // namespace abbe
