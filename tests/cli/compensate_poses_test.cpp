@@ -250,5 +250,37 @@ TEST_F(CompensateWarmPart, ItsTemperatureMustBeKnown) {
               HasSubstr("--workpiece-expansion-um-per-m-K: is missing"));
 }
 
+TEST_F(CompensateWarmPart, AnExpansionIsTheErrorMotionThatItStandsFor) {
+  folder.write("short.errors.toml",
+               "[[expansion]]\naxis = \"X\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = 8\n"
+               "coefficient_standard_uncertainty_um_per_m_K = 0.5\nfixed_point_mm = 100\n");
+  folder.write("long.errors.toml",
+               "[[motion]]\nname = \"EXX\"\nstate = \"scale_x\"\nbasis = \"monomial\"\norder = 1\nfrom_mm = -900\n"
+               "to_mm = 1100\ncoefficients_um = [0, -8]\nstandard_uncertainty_um = [0, 0.5]\n");
+  folder.write("line.ngc", "G21 G90\nG0 X0 Y0 Z10\nG1 X600 Y200 Z50 F600\nM2\n");
+  const std::string warm = "scale_x_degC=27";
+  const std::vector<std::vector<std::string>> commands = {
+      {"map", "--keep-datum", "--state", warm},
+      {"compensate", "table", "--for", "lattice-csv", "--state", warm},
+      {"compensate", "gcode", "line.ngc", "--state", warm},
+      {"compensate", "freeze"}};
+  for (const std::vector<std::string>& command : commands) {
+    std::vector<std::string> written;
+    for (const std::string name : {"short", "long"}) {
+      std::vector<std::string> arguments = command;
+      const std::string output = command.back() == "freeze" ? name + ".abbec" : name + ".csv";
+      for (const std::string& more : {std::string("--machine"), example + "mill.machine.toml", std::string("--errors"),
+                                      name + ".errors.toml", std::string("-o"), output, std::string("--force")}) {
+        arguments.push_back(more);
+      }
+      const CommandResult result = abbe(arguments);
+      ASSERT_EQ(result.exit_code, ExitCode::done) << command[0] << " " << command[1] << ": " << result.err;
+      written.push_back(folder.read(output));
+    }
+    EXPECT_FALSE(written[0].empty());
+    EXPECT_EQ(written[0], written[1]) << command[0] << " " << command[1];
+  }
+}
+
 }  // namespace
 }  // namespace abbe
