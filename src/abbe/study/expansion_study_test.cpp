@@ -75,7 +75,7 @@ std::filesystem::path slide_folder(const char* name) {
   return folder;
 }
 
-Study study_of(const std::filesystem::path& folder, const std::string& text) {
+Study expansion_study(const std::filesystem::path& folder, const std::string& text) {
   std::ofstream(folder / "slide.study.toml") << text;
   return read_study(folder / "slide.study.toml");
 }
@@ -112,7 +112,7 @@ SlideReadings slide_readings(double alpha, double from, double to, std::uint64_t
 FoundExpansion identified_expansion(const std::filesystem::path& folder, const SlideReadings& readings,
                                     const std::string& identify, Identification* all = nullptr) {
   readings.write(folder / "readings.csv");
-  const Study study = study_of(folder, slide_study("", "[[setup.data]]\nfile = \"readings.csv\"", identify));
+  const Study study = expansion_study(folder, slide_study("", "[[setup.data]]\nfile = \"readings.csv\"", identify));
   StudyResult result;
   result.campaign = gather_readings(study);
   identify_study(study, result, {});
@@ -211,7 +211,7 @@ TEST(ExpansionStudy, AKnownCoefficientIsSubtractedAndAnOpenOneFound) {
 TEST(ExpansionStudy, IsTheSameAsAnErrorMotionWithAStateAndAPrior) {
   const std::filesystem::path folder = slide_folder("expansion_motion");
   slide_readings(8.4e-6, 21, 23, 9).write(folder / "readings.csv");
-  const Study study = study_of(folder, slide_study("", "[[setup.data]]\nfile = \"readings.csv\"", kKnown));
+  const Study study = expansion_study(folder, slide_study("", "[[setup.data]]\nfile = \"readings.csv\"", kKnown));
   Campaign campaign = gather_readings(study);
   find_start_values(study.machine, campaign);
   Problem of_expansion = build_model(study, campaign).problem;
@@ -238,10 +238,10 @@ TEST(ExpansionStudy, CoversTheTruthOfManyDraws) {
     for (int k = 0; k <= 16; ++k) poses << fmt::format("{},{}\n", 50 * k, 20.1 + 0.35 * series);
   }
   poses.close();
-  Study study = study_of(folder, slide_study("[simulate.generator]\nlinear_order = 2\nmean_volumetric_um = 20\n",
-                                             "[[setup.plan]]\nkind = \"poses\"\nfile = \"poses.csv\"",
-                                             std::string(kKnown) + "[[identify.motion]]\nerrors = \"EXX\"\n"
-                                                                   "basis = \"legendre\"\norder = 2\n"));
+  Study study = expansion_study(folder, slide_study("[simulate.generator]\nlinear_order = 2\nmean_volumetric_um = 20\n",
+                                                    "[[setup.plan]]\nkind = \"poses\"\nfile = \"poses.csv\"",
+                                                    std::string(kKnown) + "[[identify.motion]]\nerrors = \"EXX\"\n"
+                                                                          "basis = \"legendre\"\norder = 2\n"));
   constexpr int kDraws = 200;
   double squares = 0, spread = 0;
   int within = 0;
@@ -270,7 +270,7 @@ TEST(ExpansionStudy, CoversTheTruthOfManyDraws) {
 TEST(ExpansionStudy, IsReportedAndWritten) {
   const std::filesystem::path folder = slide_folder("expansion_report");
   slide_readings(8.4e-6, 26, 26, 2).write(folder / "readings.csv");
-  const Study study = study_of(
+  const Study study = expansion_study(
       folder,
       slide_study("", "[[setup.data]]\nfile = \"readings.csv\"",
                   std::string(kKnown) + "[[identify.motion]]\nerrors = \"EXX\"\nbasis = \"legendre\"\norder = 1\n"));
@@ -297,7 +297,7 @@ TEST(ExpansionStudy, WhatDoesNotFitIsRefused) {
   const auto refusal = [&](const std::string& identify, const std::string& simulate = "") {
     const std::string plan = simulate.empty() ? "[[setup.data]]\nfile = \"readings.csv\""
                                               : "[[setup.plan]]\nkind = \"line\"\npoints = 5\naxis.X = {}";
-    return message_of([&] { study_of(folder, slide_study(simulate, plan, identify)); });
+    return message_of([&] { expansion_study(folder, slide_study(simulate, plan, identify)); });
   };
   const std::string place = "[[identify.expansion]]\naxis = \"X\"\nstate = \"scale_x\"\n";
   EXPECT_THAT(refusal(place), HasSubstr("coefficient_um_per_m_K: missing; expected a coefficient of expansion"));
@@ -317,7 +317,7 @@ TEST(ExpansionStudy, WhatDoesNotFitIsRefused) {
   EXPECT_THAT(refusal(place + "coefficient_um_per_m_K = 8\n"), HasSubstr("nothing is to be identified"));
   // Readings without the temperature.
   std::ofstream(folder / "readings.csv") << "X_mm,length_mm\n0,0\n400,400\n800,800\n";
-  const Study study = study_of(folder, slide_study("", "[[setup.data]]\nfile = \"readings.csv\"", kKnown));
+  const Study study = expansion_study(folder, slide_study("", "[[setup.data]]\nfile = \"readings.csv\"", kKnown));
   EXPECT_THAT(message_of([&] { run_study(study); }), HasSubstr("a column scale_x_degC in the readings"));
 }
 

@@ -41,7 +41,7 @@ ErrorsFile saw_errors(const std::string& text, StatesOfErrors states = StatesOfE
   return parse_errors(text, "saw.errors.toml", saw_with_scales(), states);
 }
 
-std::string refusal(const std::string& change, StatesOfErrors states = StatesOfErrors::allowed) {
+std::string expansion_refusal(const std::string& change, StatesOfErrors states = StatesOfErrors::allowed) {
   return message_of([&] { saw_errors("[[expansion]]\n" + change, states); });
 }
 
@@ -105,24 +105,25 @@ TEST(ExpansionsInErrorsFiles, AreTakenAtAStateWithTheirUncertainty) {
 
 TEST(ExpansionsInErrorsFiles, WhatIsWrongIsNamed) {
   const std::string good = "axis = \"X\"\nstate = \"scale_x\"\n";
-  EXPECT_THAT(refusal(good), HasSubstr("expansion[1].coefficient_um_per_m_K: missing"));
-  EXPECT_THAT(refusal(good + "coefficient_um = 8\n"), HasSubstr("coefficient_um_per_m_K"));
-  EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8\ncoefficient_standard_uncertainty_um_per_m_K = -1\n"),
-              HasSubstr("coefficient_standard_uncertainty_um_per_m_K: is negative"));
-  EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8\ntemperature_standard_uncertainty_K = -1\n"),
+  EXPECT_THAT(expansion_refusal(good), HasSubstr("expansion[1].coefficient_um_per_m_K: missing"));
+  EXPECT_THAT(expansion_refusal(good + "coefficient_um = 8\n"), HasSubstr("coefficient_um_per_m_K"));
+  EXPECT_THAT(
+      expansion_refusal(good + "coefficient_um_per_m_K = 8\ncoefficient_standard_uncertainty_um_per_m_K = -1\n"),
+      HasSubstr("coefficient_standard_uncertainty_um_per_m_K: is negative"));
+  EXPECT_THAT(expansion_refusal(good + "coefficient_um_per_m_K = 8\ntemperature_standard_uncertainty_K = -1\n"),
               HasSubstr("temperature_standard_uncertainty_K: is negative"));
-  EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8000\n"), HasSubstr("is too large"));
-  EXPECT_THAT(refusal("axis = \"X\"\ncoefficient_um_per_m_K = 8\n"), HasSubstr("expansion[1].state"));
-  EXPECT_THAT(refusal("axis = \"X\"\nstate = \"scale_y\"\ncoefficient_um_per_m_K = 8\n"),
+  EXPECT_THAT(expansion_refusal(good + "coefficient_um_per_m_K = 8000\n"), HasSubstr("is too large"));
+  EXPECT_THAT(expansion_refusal("axis = \"X\"\ncoefficient_um_per_m_K = 8\n"), HasSubstr("expansion[1].state"));
+  EXPECT_THAT(expansion_refusal("axis = \"X\"\nstate = \"scale_y\"\ncoefficient_um_per_m_K = 8\n"),
               HasSubstr("\"scale_y\" is not a state of this machine"));
-  EXPECT_THAT(refusal("axis = \"X\"\nstate = \"load\"\ncoefficient_um_per_m_K = 8\n"),
+  EXPECT_THAT(expansion_refusal("axis = \"X\"\nstate = \"load\"\ncoefficient_um_per_m_K = 8\n"),
               HasSubstr("load is not a temperature; expected a measured state with the unit degC"));
-  EXPECT_THAT(refusal("axis = \"C\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = 8\n"),
+  EXPECT_THAT(expansion_refusal("axis = \"C\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = 8\n"),
               HasSubstr("the scale of a rotary axis does not expand"));
-  EXPECT_THAT(refusal("axis = \"Y\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = 8\n"),
+  EXPECT_THAT(expansion_refusal("axis = \"Y\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = 8\n"),
               HasSubstr("\"Y\" is not an axis of this machine"));
   EXPECT_THAT(message_of([&] { saw_errors(kExpansion + kExpansion); }), HasSubstr("expansion with this state already"));
-  EXPECT_THAT(refusal(good + "coefficient_um_per_m_K = 8\n", StatesOfErrors::refused),
+  EXPECT_THAT(expansion_refusal(good + "coefficient_um_per_m_K = 8\n", StatesOfErrors::refused),
               HasSubstr("this error depends on scale_x, which is not taken into account here"));
 }
 

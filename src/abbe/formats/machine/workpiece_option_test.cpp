@@ -27,8 +27,8 @@ PoseList two_poses() {
   return poses;
 }
 
-std::string refusal_of(const WorkpieceOptions& options, const std::vector<std::string>& states = {"part_degC=25"},
-                       PoseList poses = two_poses()) {
+std::string workpiece_refusal(const WorkpieceOptions& options,
+                              const std::vector<std::string>& states = {"part_degC=25"}, PoseList poses = two_poses()) {
   return message_of([&] { workpiece_option(mill_with_part(), options, states, poses); });
 }
 
@@ -58,7 +58,7 @@ TEST(WorkpieceOption, TakesTheTemperatureFromAnOptionOrAColumn) {
   EXPECT_EQ(found->temperature_uncertainty, 0.3);
   EXPECT_EQ(found->fixed_point, Eigen::Vector3d(1, 2, 3));
   EXPECT_THAT(poses.state[0], ElementsAre(25, 25));
-  EXPECT_THAT(refusal_of(of_steel(), {"part_degC=25"}, poses), HasSubstr("is a column of the poses too"));
+  EXPECT_THAT(workpiece_refusal(of_steel(), {"part_degC=25"}, poses), HasSubstr("is a column of the poses too"));
   poses.state[0] = {24, 26};
   EXPECT_TRUE(workpiece_option(mill_with_part(), of_steel(), {}, poses));
   EXPECT_EQ(workpiece_factor(mill_with_part(), *found, poses, 1), 6);
@@ -67,23 +67,23 @@ TEST(WorkpieceOption, TakesTheTemperatureFromAnOptionOrAColumn) {
 TEST(WorkpieceOption, WhatIsWrongIsNamed) {
   WorkpieceOptions options;
   options.state = "part";
-  EXPECT_THAT(refusal_of(options), HasSubstr("--workpiece-expansion-um-per-m-K: is missing"));
+  EXPECT_THAT(workpiece_refusal(options), HasSubstr("--workpiece-expansion-um-per-m-K: is missing"));
   options = of_steel();
   options.state.clear();
-  EXPECT_THAT(refusal_of(options), HasSubstr("--workpiece-state: is missing"));
+  EXPECT_THAT(workpiece_refusal(options), HasSubstr("--workpiece-state: is missing"));
   options.state = "load";
-  EXPECT_THAT(refusal_of(options), HasSubstr("--workpiece-state load: is not a temperature"));
+  EXPECT_THAT(workpiece_refusal(options), HasSubstr("--workpiece-state load: is not a temperature"));
   options.state = "hall";
-  EXPECT_THAT(refusal_of(options), HasSubstr("its reference is 22 degC, and parts are to be right at 20 degC"));
+  EXPECT_THAT(workpiece_refusal(options), HasSubstr("its reference is 22 degC, and parts are to be right at 20 degC"));
   options.state = "table";
-  EXPECT_THAT(refusal_of(options), HasSubstr("the machine has no such state"));
+  EXPECT_THAT(workpiece_refusal(options), HasSubstr("the machine has no such state"));
   options = of_steel();
   options.u_expansion = -1;
-  EXPECT_THAT(refusal_of(options), HasSubstr("--u-workpiece-expansion-um-per-m-K: out of range"));
+  EXPECT_THAT(workpiece_refusal(options), HasSubstr("--u-workpiece-expansion-um-per-m-K: out of range"));
   options = of_steel();
   options.expansion = 1e5;
-  EXPECT_THAT(refusal_of(options), HasSubstr("out of range; expected -1000 to 1000 um/(m K)"));
-  EXPECT_THAT(refusal_of(of_steel(), {}), HasSubstr("part_degC: the temperature of the workpiece is not given"));
+  EXPECT_THAT(workpiece_refusal(options), HasSubstr("out of range; expected -1000 to 1000 um/(m K)"));
+  EXPECT_THAT(workpiece_refusal(of_steel(), {}), HasSubstr("part_degC: the temperature of the workpiece is not given"));
 }
 
 }  // namespace
