@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t kGroup = 16;  // moves with a common bound
 constexpr double kDeadBandShare = 0.125;
+// Of the tolerances: what remains is for the motions of axes that differ by the errors of either side of approach.
+constexpr double kShareBeforeApproaches = 0.99;
 
 bool is_arc(const ProgramMove& move) {
   return move.kind == MoveKind::arc_clockwise || move.kind == MoveKind::arc_counterclockwise;
@@ -54,6 +56,14 @@ bool ChunkCorrection::can_be_made(const ProgramMove& move) const {
 PathTolerance ChunkCorrection::tolerance_of(const ProgramMove& move) const {
   if (move.kind != MoveKind::rapid) return options_.tolerance;
   return {options_.rapid_tolerance, std::numeric_limits<double>::infinity()};
+}
+
+PathTolerance ChunkCorrection::tolerance_before_approaches(const ProgramMove& move) const {
+  PathTolerance tolerance = tolerance_of(move);
+  if (!correction_.has_approaches()) return tolerance;
+  tolerance.position *= kShareBeforeApproaches;
+  tolerance.orientation *= kShareBeforeApproaches;
+  return tolerance;
 }
 
 void ChunkCorrection::place_nodes(std::span<const ProgramMove> moves, const ProgramMove* before,
@@ -118,7 +128,7 @@ void ChunkCorrection::prove_groups(std::span<const ProgramMove> moves, ProgramCh
       i += std::max(count, std::size_t{1});
       continue;
     }
-    const PathTolerance tolerance = tolerance_of(first);
+    const PathTolerance tolerance = tolerance_before_approaches(first);
     const PieceBound bound = bound_pieces(*bounder_, machine_.axes.size(), first.coordinates,
                                           correction_.tool_point(chunk.tool[i]), {pieces.data(), count});
     if (bound_excess(*bounder_, tolerance, bound, nullptr) <= 1) {
@@ -253,7 +263,9 @@ void ChunkCorrection::give_move(const ProgramMove& move, const ProgramMove* earl
     return;
   }
   MoveSplitter& splitter = *chunk.splitter;
-  if (!splitter.split(move, chunk.tool[i], tolerance_of(move), start, end)) chunk.report.not_proven.add(move.line);
+  if (!splitter.split(move, chunk.tool[i], tolerance_before_approaches(move), start, end)) {
+    chunk.report.not_proven.add(move.line);
+  }
   if (splitter.nodes().size() > 2) ++chunk.report.split_moves;
   pieces_of_batch_ += splitter.nodes().size() - 1;
   give_nodes(move, splitter.nodes(), splitter.shares(), chunk);
@@ -305,12 +317,33 @@ bool ChunkCorrection::turns_with_spindle(const ProgramMove& move, std::size_t i,
   });
 }
 
+void ChunkCorrection::prove_after_approaches(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const {
+  if (move.spindle != SpindleMove::none) return;  // bounded as a whole
+  const ProgramWay& way = chunk.way;
+  const MovePath path(move);
+  const auto after = [&](std::size_t node, std::size_t approached) {
+    return correction_.after(move.coordinates, chunk.tool[i], way.nodes[node], way.approach[approached]);
+  };
+  for (std::size_t k = way.first[i] + 1; k < way.first[i + 1]; ++k) {
+    const CorrectedNode from = after(k - 1, k), to = after(k, k);
+    if (!from.point_reached() || !to.point_reached()) continue;
+    const MovePiece piece{&from, &to, path.is_arc() ? &path : nullptr, way.shares[k] - way.shares[k - 1]};
+    const PieceBound bound = bound_pieces(*bounder_, machine_.axes.size(), move.coordinates,
+                                          correction_.tool_point(chunk.tool[i]), {&piece, 1});
+    if (bound_excess(*bounder_, tolerance_of(move), bound, &piece) > 1) {
+      chunk.report.not_proven.add(move.line);
+      return;
+    }
+  }
+}
+
 void ChunkCorrection::give_steps(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const {
   const ProgramWay& way = chunk.way;
   if (way.first[i] == way.first[i + 1]) {
     chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
     return;
   }
+  if (correction_.has_approaches()) prove_after_approaches(move, i, chunk);
   if (turns_with_spindle(move, i, way)) chunk.report.play_with_spindle.add(move.line);
   const double duration = move_duration(move);
   reversals_.steps(correction_, move, chunk.tool[i], way, i, chunk.steps);
@@ -325,9 +358,8 @@ void ChunkCorrection::give_steps(const ProgramMove& move, std::size_t i, Program
         if (step.approach[axis.axis] == 0) chunk.report.direction_unknown[axis.axis].add(move.line);
       }
     } else {
-      const bool rotary = machine_.axes[step.taken_up].kind == AxisKind::rotary;
       CorrectedPiece piece{step.node.corrected, move.feed, move.feed_mode};
-      set_take_up_feed(move, rotary, step.way, duration * share,
+      set_take_up_feed(move, step.rotary, step.way, duration * share,
                        reversals_.moved(way.nodes[step.to - 1], way.nodes[step.to]), piece);
       if (piece.feed_mode != move.feed_mode) chunk.report.inverse_time.add(move.line);
       // Between moves of a cycle or two, LinuxCNC 2.9 loses its way where it may round corners (docs/programs.md).
