@@ -50,6 +50,7 @@ class FactorBounds {
   };
   struct Torque {
     std::vector<std::size_t> turning;  ///< rotary axes between the bed and the line
+    double level = 1;                  ///< sine of the angle between the line and gravity with these at zero
     std::vector<Arm> arms;
   };
   Torque torque_of(const Machine& machine, const MachineState& state) const;

@@ -49,9 +49,11 @@ class NodeCorrection {
   const Eigen::Vector3d& tool_point(std::size_t tool) const { return tools_[tool].point; }
 
   /// Fills everything but `words`.
-  void correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes) const;
+  /// @param approach  from which sides the axes come; 0: the mean of both
+  void correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes,
+               const AxisApproach& approach = {}) const;
 
-  /// Whether errors depend on the side from which axes come; correct() takes the mean of both.
+  /// Whether errors depend on the side from which axes come.
   bool has_approaches() const { return !approaches_.empty(); }
   /// The node for the errors after these approaches.
   CorrectedNode after(ProgramCoordinates coordinates, std::size_t tool, const CorrectedNode& node,

@@ -40,6 +40,13 @@ void add_ageing(const Machine& machine, double days, ErrorsFile& file);
 ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
                           const std::vector<std::string>& states, StatesOfErrors not_given = StatesOfErrors::refused);
 
+/// The same of errors that have been read.
+/// @param option  how the user calls it, for the error: "--state"
+/// @param path    of the file, for messages
+ErrorsFile errors_at_options(const Machine& machine, ErrorsFile file, const std::string& option,
+                             const std::vector<std::string>& states, const std::string& path,
+                             StatesOfErrors not_given = StatesOfErrors::refused);
+
 /// The errors of a file with their states, older if --state says so, for a job that takes the values itself.
 /// @param values  [states of the machine] written: those of --state, NaN where not given
 /// @throws InputError

@@ -10,8 +10,6 @@ namespace {
 
 constexpr std::size_t kGroup = 16;  // moves with a common bound
 constexpr double kDeadBandShare = 0.125;
-// Of the tolerances: what remains is for the motions of axes that differ by the errors of either side of approach.
-constexpr double kShareBeforeApproaches = 0.99;
 
 bool is_arc(const ProgramMove& move) {
   return move.kind == MoveKind::arc_clockwise || move.kind == MoveKind::arc_counterclockwise;
@@ -56,14 +54,6 @@ bool ChunkCorrection::can_be_made(const ProgramMove& move) const {
 PathTolerance ChunkCorrection::tolerance_of(const ProgramMove& move) const {
   if (move.kind != MoveKind::rapid) return options_.tolerance;
   return {options_.rapid_tolerance, std::numeric_limits<double>::infinity()};
-}
-
-PathTolerance ChunkCorrection::tolerance_before_approaches(const ProgramMove& move) const {
-  PathTolerance tolerance = tolerance_of(move);
-  if (!correction_.has_approaches()) return tolerance;
-  tolerance.position *= kShareBeforeApproaches;
-  tolerance.orientation *= kShareBeforeApproaches;
-  return tolerance;
 }
 
 void ChunkCorrection::place_nodes(std::span<const ProgramMove> moves, const ProgramMove* before,
@@ -128,7 +118,7 @@ void ChunkCorrection::prove_groups(std::span<const ProgramMove> moves, ProgramCh
       i += std::max(count, std::size_t{1});
       continue;
     }
-    const PathTolerance tolerance = tolerance_before_approaches(first);
+    const PathTolerance tolerance = tolerance_of(first);
     const PieceBound bound = bound_pieces(*bounder_, machine_.axes.size(), first.coordinates,
                                           correction_.tool_point(chunk.tool[i]), {pieces.data(), count});
     if (bound_excess(*bounder_, tolerance, bound, nullptr) <= 1) {
@@ -263,7 +253,7 @@ void ChunkCorrection::give_move(const ProgramMove& move, const ProgramMove* earl
     return;
   }
   MoveSplitter& splitter = *chunk.splitter;
-  if (!splitter.split(move, chunk.tool[i], tolerance_before_approaches(move), start, end)) {
+  if (!splitter.split(move, chunk.tool[i], tolerance_of(move), start, end)) {
     chunk.report.not_proven.add(move.line);
   }
   if (splitter.nodes().size() > 2) ++chunk.report.split_moves;
@@ -317,38 +307,52 @@ bool ChunkCorrection::turns_with_spindle(const ProgramMove& move, std::size_t i,
   });
 }
 
-void ChunkCorrection::prove_after_approaches(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const {
-  if (move.spindle != SpindleMove::none) return;  // bounded as a whole
-  const ProgramWay& way = chunk.way;
-  const MovePath path(move);
-  const auto after = [&](std::size_t node, std::size_t approached) {
-    return correction_.after(move.coordinates, chunk.tool[i], way.nodes[node], way.approach[approached]);
-  };
-  for (std::size_t k = way.first[i] + 1; k < way.first[i + 1]; ++k) {
-    const CorrectedNode from = after(k - 1, k), to = after(k, k);
-    if (!from.point_reached() || !to.point_reached()) continue;
-    const MovePiece piece{&from, &to, path.is_arc() ? &path : nullptr, way.shares[k] - way.shares[k - 1]};
-    const PieceBound bound = bound_pieces(*bounder_, machine_.axes.size(), move.coordinates,
-                                          correction_.tool_point(chunk.tool[i]), {&piece, 1});
-    if (bound_excess(*bounder_, tolerance_of(move), bound, &piece) > 1) {
-      chunk.report.not_proven.add(move.line);
-      return;
+ProgramWay ChunkCorrection::way_after_approaches(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const {
+  const ProgramWay& mean = chunk.way;
+  const std::size_t first = mean.first[i], last = mean.first[i + 1], tool = chunk.tool[i];
+  ProgramWay way;
+  way.nodes = {mean.nodes[first]};
+  way.shares = {mean.shares[first]};
+  way.approach = {mean.approach[first]};
+  bool proven = true;
+  for (std::size_t k = first + 1; k < last; ++k) {
+    const AxisApproach& approach = mean.approach[k];
+    const CorrectedNode from = correction_.after(move.coordinates, tool, mean.nodes[k - 1], approach);
+    const CorrectedNode to = correction_.after(move.coordinates, tool, mean.nodes[k], approach);
+    // Moves with the spindle are not split, and what is not reached is not proven.
+    if (move.spindle == SpindleMove::none && proven && from.point_reached() && to.point_reached()) {
+      MoveSplitter& splitter = *chunk.splitter;
+      proven =
+          splitter.split_part(move, tool, tolerance_of(move), approach, from, mean.shares[k - 1], to, mean.shares[k]);
+      for (std::size_t n = 1; n + 1 < splitter.nodes().size(); ++n) {
+        way.nodes.push_back(splitter.nodes()[n]);
+        way.shares.push_back(splitter.shares()[n]);
+        way.approach.push_back(approach);
+      }
     }
+    way.nodes.push_back(mean.nodes[k]);
+    way.shares.push_back(mean.shares[k]);
+    way.approach.push_back(approach);
   }
+  if (!proven) chunk.report.not_proven.add(move.line);
+  way.first = {0, way.nodes.size()};
+  return way;
 }
 
-void ChunkCorrection::give_steps(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const {
-  const ProgramWay& way = chunk.way;
-  if (way.first[i] == way.first[i + 1]) {
+void ChunkCorrection::give_steps(const ProgramMove& move, std::size_t index, ProgramChunk& chunk) const {
+  if (chunk.way.first[index] == chunk.way.first[index + 1]) {
     chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
     return;
   }
-  if (correction_.has_approaches()) prove_after_approaches(move, i, chunk);
+  ProgramWay after;
+  if (correction_.has_approaches()) after = way_after_approaches(move, index, chunk);
+  const ProgramWay& way = correction_.has_approaches() ? after : chunk.way;
+  const std::size_t i = correction_.has_approaches() ? 0 : index;
   if (turns_with_spindle(move, i, way)) chunk.report.play_with_spindle.add(move.line);
   const double duration = move_duration(move);
-  reversals_.steps(correction_, move, chunk.tool[i], way, i, chunk.steps);
+  reversals_.steps(correction_, move, chunk.tool[index], way, i, chunk.steps);
   WordValues at =
-      reversals_.commanded(correction_, move, chunk.tool[i], way.nodes[way.first[i]], way.approach[way.first[i]])
+      reversals_.commanded(correction_, move, chunk.tool[index], way.nodes[way.first[i]], way.approach[way.first[i]])
           .corrected;
   for (const ProgramStep& step : chunk.steps) {
     const double share = way.shares[step.to] - way.shares[step.to - 1];

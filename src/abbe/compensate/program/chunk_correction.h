@@ -55,8 +55,6 @@ class ChunkCorrection {
  private:
   bool can_be_made(const ProgramMove& move) const;
   PathTolerance tolerance_of(const ProgramMove& move) const;
-  /// The same while the sides of approach are not known, where errors depend on them.
-  PathTolerance tolerance_before_approaches(const ProgramMove& move) const;
   void place_nodes(std::span<const ProgramMove> moves, const ProgramMove* before, ProgramChunk& chunk) const;
   void correct_nodes(std::span<const ProgramMove> moves, ProgramChunk& chunk) const;
   /// One bound for several moves in a row, where they are alike; it proves each of them.
@@ -85,9 +83,9 @@ class ChunkCorrection {
   /// Whether an axis with a reversal value turns round in a move with the spindle: where it begins, or where a tap
   /// does.
   bool turns_with_spindle(const ProgramMove& move, std::size_t i, const ProgramWay& way) const;
-  /// Proves the pieces of a move again, as they are when the sides of approach are known.
-  void prove_after_approaches(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const;
-  void give_steps(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const;
+  /// The way of one move as it is when the sides of approach are known: its pieces are proven again, or split.
+  ProgramWay way_after_approaches(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const;
+  void give_steps(const ProgramMove& move, std::size_t index, ProgramChunk& chunk) const;
 
   Machine machine_;
   WordAxes words_;

@@ -53,7 +53,7 @@ inline Machine with_sides(Machine machine) {
 /// Largest factor of a state at places within the travel: of the order of what it becomes.
 inline double usual_factor(const Machine& machine, const WordAxes& words, std::size_t state,
                            std::mt19937_64& generator) {
-  double largest = 1e-6;
+  double largest = machine.states[state].kind == StateKind::axis ? 1e-6 : 1;
   for (int k = 0; k < 20; ++k) {
     const WordValues place = random_axis_words(machine, words, generator);
     const std::vector<double> axes = commanded_axes(machine, words, ProgramCoordinates::axes, place);

@@ -1,5 +1,6 @@
 #include "abbe/compensate/program/factor_bounds.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -34,12 +35,14 @@ FactorBounds::Torque FactorBounds::torque_of(const Machine& machine, const Machi
   const auto inner = [&](std::size_t i) { return on_workpiece ? i + 1 : i - 1; };
   const std::size_t bed = on_workpiece ? machine.workpiece_axis_count() : machine.workpiece_axis_count() - 1;
   Torque torque;
+  const double gravity = machine.gravity.norm();
+  if (gravity > 0) torque.level = machine.axes[state.axis].direction.cross(machine.gravity).norm() / gravity;
   for (std::size_t i = inner(state.axis); i != bed; i = inner(i)) {
     if (rotary_[i]) torque.turning.push_back(i);
   }
   for (const GravityLoad& load : state.loads) {
     Arm arm;
-    arm.weight = 1e-3 * load.mass_kg * machine.gravity.norm();
+    arm.weight = 1e-3 * load.mass_kg * gravity;
     arm.length = (load.point - machine.axes[load.carried_by].point).norm();
     for (std::size_t i = load.carried_by;; i = inner(i)) {
       const bool last = i == state.axis;
@@ -52,15 +55,17 @@ FactorBounds::Torque FactorBounds::torque_of(const Machine& machine, const Machi
   return torque;
 }
 
-/// Seen from the base of the axis, its line stands still: the masses move by the axes outside it, and the direction of
-/// gravity turns by those between it and the bed.
+/// Seen from the base of the axis, its line stands still: the masses move by the axes outside it, and gravity turns by
+/// those between it and the bed. The torque is arm . (gravity x line).
 BoundAlong FactorBounds::torque_along(const Torque& torque, const CommandsAlong& commands) const {
-  BoundAlong down{1, 0, 0, 0};
+  BoundAlong down{torque.level, 0, 0, 0};
   for (const std::size_t i : torque.turning) {
+    down.value += std::max(std::abs(commands.lowest[i]), std::abs(commands.highest[i]));
     down.rate += commands.speed[i];
     down.second += commands.bend[i];
     down.lag += commands.lag[i];
   }
+  down.value = std::min(down.value, 1.0);
   down.second += down.rate * down.rate;
   BoundAlong sum;
   for (const Arm& arm : torque.arms) {

@@ -37,10 +37,11 @@ std::size_t NodeCorrection::tool(const std::array<double, 3>& length) {
   return tools_.size() - 1;
 }
 
-void NodeCorrection::correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes) const {
+void NodeCorrection::correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes,
+                             const AxisApproach& approach) const {
   for (std::size_t first = 0; first < nodes.size(); first += ChainPlan::kBlockSize) {
     const std::size_t count = std::min(ChainPlan::kBlockSize, nodes.size() - first);
-    correct_block(coordinates, tools_[tool], AxisApproach{}, nodes.subspan(first, count));
+    correct_block(coordinates, tools_[tool], approach, nodes.subspan(first, count));
   }
 }
 

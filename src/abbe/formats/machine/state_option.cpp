@@ -50,6 +50,21 @@ std::optional<double> take_age(const std::string& option, std::vector<std::strin
   return days;
 }
 
+/// Values of states and the age among texts of an option; the errors become as old as that says.
+std::vector<double> values_and_age(const Machine& machine, const std::string& option, std::vector<std::string> states,
+                                   const std::string& path, ErrorsFile& file) {
+  const std::optional<double> days = take_age(option, states);
+  std::vector<double> values = state_options(machine, option, states);
+  if (!days || is_truth(file)) return values;  // the truth is what it is
+  if (!file.ageing.any()) {
+    throw InputError({.file = path, .field = "ageing"}, "it is not said how these errors wander with time",
+                     "a table [ageing] with um_per_sqrt_day and urad_per_sqrt_day");
+  }
+  add_ageing(machine, *days, file);
+  file.at_state.emplace_back(std::string(kAgeOption), *days);
+  return values;
+}
+
 /// What is wrong with the name of a state.
 std::string name_problem(const Machine& machine, const std::string& name, const std::vector<std::string>& columns) {
   const std::size_t named = find_state(machine, name);
@@ -242,30 +257,31 @@ void add_ageing(const Machine& machine, double days, ErrorsFile& file) {
 
 ErrorsFile read_errors_and_values(const std::filesystem::path& path, const Machine& machine,
                                   const std::vector<std::string>& states, std::vector<double>& values) {
-  std::vector<std::string> of_machine = states;
-  const std::optional<double> days = take_age("--state", of_machine);
-  values = state_options(machine, "--state", of_machine);
   ErrorsFile file = read_errors(path, machine, StatesOfErrors::allowed);
-  if (!days || is_truth(file)) return file;  // the truth is what it is
-  if (!file.ageing.any()) {
-    throw InputError({.file = path.string(), .field = "ageing"}, "it is not said how these errors wander with time",
-                     "a table [ageing] with um_per_sqrt_day and urad_per_sqrt_day");
-  }
-  add_ageing(machine, *days, file);
-  file.at_state.emplace_back(std::string(kAgeOption), *days);
+  values = values_and_age(machine, "--state", states, path.string(), file);
+  return file;
+}
+
+ErrorsFile errors_at_options(const Machine& machine, ErrorsFile file, const std::string& option,
+                             const std::vector<std::string>& states, const std::string& path,
+                             StatesOfErrors not_given) {
+  StateValues before = std::exchange(file.at_state, {});
+  const std::vector<double> values = values_and_age(machine, option, states, path, file);
+  const StateValues age = std::exchange(file.at_state, std::move(before));
+  const bool any = std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  if (any || not_given == StatesOfErrors::refused) file = at_given_states(machine, std::move(file), values, path);
+  file.at_state.insert(file.at_state.end(), age.begin(), age.end());
   return file;
 }
 
 ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
                           const std::vector<std::string>& states, StatesOfErrors not_given) {
-  std::vector<double> values;
-  ErrorsFile file = read_errors_and_values(path, machine, states, values);
-  const bool any = std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
-  if (!any && not_given == StatesOfErrors::allowed) return file;
-  const StateValues age = std::exchange(file.at_state, {});
-  file = at_given_states(machine, std::move(file), values, path.string());
-  file.at_state.insert(file.at_state.end(), age.begin(), age.end());
-  return file;
+  // Options first: what is wrong with them needs no file.
+  std::vector<std::string> of_machine = states;
+  take_age("--state", of_machine);
+  state_options(machine, "--state", of_machine);
+  ErrorsFile file = read_errors(path, machine, StatesOfErrors::allowed);
+  return errors_at_options(machine, std::move(file), "--state", states, path.string(), not_given);
 }
 
 std::string state_words(const StateValues& values) {
