@@ -15,12 +15,13 @@
 #include "messages.h"
 #include "options.h"
 #include "progress.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
 
 struct CompareCommand {
-  std::vector<std::string> campaigns, tolerances;
+  std::vector<std::string> campaigns, states, tolerances;
   std::string machine, output;
   double level_percent = 5;
   bool json = false;
@@ -30,6 +31,7 @@ int run_compare(const CompareCommand& command) {
   CompareRequest request = read_campaigns(command.campaigns, command.machine);
   for (const IdentifiedCampaign& campaign : request.campaigns) tell_distrusted(campaign.errors_file, campaign.errors);
   request.level = command.level_percent / 100;
+  request.states = command.states;
   request.tolerances = command.tolerances;
   request.page = !command.output.empty();
   Progress progress("comparing campaigns");
@@ -46,7 +48,7 @@ int run_compare(const CompareCommand& command) {
     if (!command.output.empty()) fmt::print("\nresults in {}\n", command.output);
   }
   if (!result.is_judged()) tell("abbe: not all changes could be judged\n");
-  return result.is_judged() && !result.report.exceeds_tolerance() ? kDone : kNegative;
+  return tell_outside(result.at_state, result.is_judged() && !result.report.exceeds_tolerance() ? kDone : kNegative);
 }
 
 }  // namespace
@@ -76,6 +78,7 @@ void add_compare_command(CommandLine& line) {
   app->add_option("--tolerance", command->tolerances,
                   "Largest permitted amount of a figure, such as V_max_um=10; repeatable. Exit code 1 if exceeded")
       ->allow_extra_args(false);
+  add_states(*app, command->states);
   app->add_flag("--json", command->json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_compare(*command); }; });
 }

@@ -8,8 +8,7 @@ namespace abbe {
 
 ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit,
                                const std::vector<std::string>& states, StatesOfErrors not_given) {
-  ErrorsFile contents = states.empty() && not_given == StatesOfErrors::allowed ? read_errors(path, machine, not_given)
-                                                                               : read_errors_at(path, machine, states);
+  ErrorsFile contents = read_errors_at(path, machine, states, not_given);
   require_trusted(contents, path.string(), accept_misfit);
   for (const std::string& reason : contents.distrusted)
     tell("abbe: {}: used although marked as not to be trusted: {}\n", path.string(), reason);

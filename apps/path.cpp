@@ -18,6 +18,7 @@
 #include "messages.h"
 #include "options.h"
 #include "step_reading.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -86,9 +87,8 @@ int run_path(const PathCommand& command) {
       for (const std::string& output : command.outputs) fmt::print("{} written\n", output);
     }
   }
-  if (planned.refused.empty()) return kDone;
-  tell("abbe: {}\n", planned.refused);
-  return kNegative;
+  if (!planned.refused.empty()) tell("abbe: {}\n", planned.refused);
+  return tell_outside(planned.at_state, planned.refused.empty() ? kDone : kNegative);
 }
 
 }  // namespace

@@ -5,6 +5,11 @@
 
 namespace abbe {
 
+int tell_outside(const StateValues& at_state, int code) {
+  for (const std::string& sentence : at_state.outside) tell("abbe: {}\n", sentence);
+  return at_state.outside.empty() || code != kDone ? code : kNegative;
+}
+
 int tell_left_out(const LeftOutPoses& left_out, bool accepted) {
   if (left_out.count() == 0 && left_out.extrapolated.empty()) return kDone;
   const char* const way_out = accepted ? "" : " (--accept-uncovered: exit code 0)";

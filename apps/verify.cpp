@@ -71,7 +71,7 @@ VerificationRequest request_of(const VerifyOptions& options) {
 }
 
 /// Options of random poses and test pieces, which readings have no use for.
-constexpr std::array<const char*, 7> kNotWithReadings = {"--machine", "--truth", "--poses",   "--state",
+constexpr std::array<const char*, 6> kNotWithReadings = {"--machine", "--truth", "--poses",
                                                          "--seed",    "--range", "--reach-mm"};
 
 void refuse_beside_readings(const Subcommand& command, const VerifyOptions& options) {

@@ -8,6 +8,7 @@
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/run_study.h"
@@ -24,7 +25,8 @@ int run_verify_readings(const VerifyReadingsOptions& options) {
   request.study = read_study(options.study);
   const std::string errors = file_or_of_results(options.files.errors, options.files.results, "errors.toml", "--errors");
   request.errors_file = errors;
-  request.identified = read_errors_and_tell(errors, request.study.machine);
+  request.identified = read_errors_and_values(errors, request.study.machine, options.files.states, request.states);
+  tell_distrusted(errors, request.identified);
   request.least_reduction = options.least_reduction;
   request.largest_ratio = options.largest_ratio;
   StepProgress progress;

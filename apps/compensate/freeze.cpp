@@ -20,6 +20,7 @@
 #include "machine_options.h"
 #include "messages.h"
 #include "options.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -58,9 +59,8 @@ int run_freeze(const FreezeArguments& arguments) {
   if (written) write_file_atomically(arguments.output, result.bytes());
   const FrozenOutput file{.file = arguments.output, .written = written, .dry_run = arguments.dry_run};
   fmt::print("{}", arguments.json ? json_text(frozen_errors_json(result, file)) : frozen_errors_text(result, file));
-  if (result.refused.empty()) return kDone;
-  tell("abbe: refused: {}; nothing was written\n", result.refused);
-  return kNegative;
+  if (!result.refused.empty()) tell("abbe: refused: {}; nothing was written\n", result.refused);
+  return tell_outside(result.at_state, result.refused.empty() ? kDone : kNegative);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "messages.h"
 #include "options.h"
 #include "progress.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -75,7 +76,7 @@ int run_gcode(const GcodeOptions& options) {
   std::fflush(stdout);
   for (const std::string& reason : result.refused) tell("abbe: {}\n", reason);
   if (!result.refused.empty() && !options.dry_run) tell("abbe: nothing written\n");
-  return result.refused.empty() ? kDone : kNegative;
+  return tell_outside(result.at_state, result.refused.empty() ? kDone : kNegative);
 }
 
 }  // namespace

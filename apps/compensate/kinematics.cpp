@@ -22,6 +22,7 @@
 #include "machine_options.h"
 #include "messages.h"
 #include "options.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -65,7 +66,7 @@ int run_kinematics(const KinematicsArguments& arguments) {
   if (arguments.dry_run && !arguments.json) fmt::print("dry run: nothing is written\n");
   std::fflush(stdout);
   for (const std::string& words : made.refused) tell("abbe: {}; nothing is written\n", words);
-  return made.says_no() ? kNegative : kDone;
+  return tell_outside(file.at_state, made.says_no() ? kNegative : kDone);
 }
 
 }  // namespace

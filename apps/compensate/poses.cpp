@@ -26,6 +26,7 @@
 #include "machine_options.h"
 #include "messages.h"
 #include "options.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -62,7 +63,7 @@ int run_robot_program(const PosesCommand& command, RobotLanguage language) {
                                 : corrected_robot_text(request, result, command.output, written));
   std::fflush(stdout);
   if (!result.refused.empty()) tell("abbe: {}; nothing written\n", result.refused);
-  return result.refused.empty() ? kDone : kNegative;
+  return tell_outside(request.errors.at_state, result.refused.empty() ? kDone : kNegative);
 }
 
 int run_poses(const PosesCommand& command) {
@@ -96,11 +97,11 @@ int run_poses(const PosesCommand& command) {
     tell("abbe: {}; nothing written\n", result.refused);
     return kNegative;
   }
-  for (const std::string& sentence : result.at_state.outside) tell("abbe: {}\n", sentence);
-  if (result.not_reached == 0) return result.at_state.outside.empty() ? kDone : kNegative;
-  tell("abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", result.not_reached,
-       result.poses.count());
-  return kNegative;
+  if (result.not_reached > 0) {
+    tell("abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", result.not_reached,
+         result.poses.count());
+  }
+  return tell_outside(result.at_state, result.not_reached == 0 ? kDone : kNegative);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include "machine_options.h"
 #include "messages.h"
 #include "options.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -137,7 +138,9 @@ int run_table(const TableCommand& command) {
   std::fflush(stdout);
   for (const std::string& words : made.refused) tell("abbe: {}; nothing is written\n", words);
   if (!made.too_few_nodes.empty()) tell("abbe: {}; no table is written\n", made.too_few_nodes);
-  return made.says_no() ? kNegative : kDone;
+  StateValues at_state = file.at_state;
+  if (made.over_states && made.over_states->outside > 0) at_state.outside.push_back(made.over_states->outside_words());
+  return tell_outside(at_state, made.says_no() ? kNegative : kDone);
 }
 
 }  // namespace

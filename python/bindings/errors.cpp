@@ -222,8 +222,11 @@ nb::object evaluate_uncertainty(const MachineErrors& errors, const std::string& 
 MachineErrors errors_at(const MachineErrors& errors, const std::map<std::string, double>& states) {
   std::vector<std::string> texts;
   for (const auto& [name, value] : states) texts.push_back(fmt::format("{}={}", name, value));
-  const std::vector<double> values = state_options(errors.machine, "states", texts);
-  return {errors.machine, at_given_states(errors.machine, errors.file, values, "errors")};
+  MachineErrors there{errors.machine, errors_at_options(errors.machine, errors.file, "states", texts, "errors")};
+  for (const std::string& sentence : there.file.at_state.outside) {
+    if (PyErr_WarnEx(PyExc_UserWarning, sentence.c_str(), 1) < 0) throw nb::python_error();
+  }
+  return there;
 }
 
 /// Names of the states that errors depend on, as Python gives them.
@@ -438,7 +441,8 @@ void bind_errors(nb::module_& module) {
       .def("at_state", &errors_at, nb::arg("states"),
            "Errors as they are at values of measured and lag states, with their covariance.\n\n"
            "states: {'ambient_degC': 26.5}, all that the errors depend on. Errors with states that are computed at a\n"
-           "pose keep these. Raises InputError naming what is missing.")
+           "pose keep these. 'days_since_measurement' adds the random walk of the errors. Warns (UserWarning) of\n"
+           "values beyond those that were measured. Raises InputError naming what is missing.")
       .def("evaluate", &evaluate, nb::arg("axis"), nb::arg("positions_mm_rad"),
            nb::sig("def evaluate(self, axis: str, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray"),
            "Error motions of one axis at its positions: [n, 6], EX EY EZ in mm, EA EB EC in rad.")

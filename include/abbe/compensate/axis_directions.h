@@ -13,10 +13,10 @@ namespace abbe {
 /// Direction of the last motion of every axis: +1, -1, 0 where it is not known or does not matter.
 using AxisApproach = std::array<std::int8_t, kMaxAxes>;
 
-/// An axis with a reversal value (errors/reversal.h) whose direction is followed.
+/// An axis whose direction is followed: it has a reversal value (errors/reversal.h), or errors depend on its approach.
 struct ReversalAxis {
   std::size_t axis = 0;
-  double value = 0;      ///< B, mm or rad
+  double value = 0;      ///< B, mm or rad; 0: none
   double dead_band = 0;  ///< mm or rad; going back by no more than this is no reversal
 
   /// What the command gets so that the axis stands where it shall after an approach in that direction; mm or rad.

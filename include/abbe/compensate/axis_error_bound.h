@@ -24,7 +24,8 @@ struct AxisErrorBound {
 /// Bounds of one axis, looked up in cells over its travel.
 class AxisErrorCells {
  public:
-  AxisErrorCells(const Machine& machine, const ErrorSet& errors, std::size_t axis);
+  /// @param state  of the terms that are bounded, without its factor; kNoState: those without a state
+  AxisErrorCells(const Machine& machine, const ErrorSet& errors, std::size_t axis, std::size_t state = kNoState);
 
   /// Bounds over from <= q <= to. Where the interval leaves the cells they are worked out anew, which is slow.
   AxisErrorBound over(double from, double to) const;

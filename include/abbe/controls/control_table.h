@@ -110,9 +110,11 @@ struct LossOverStates {
   std::vector<double> rms;      ///< [n] volumetric error that the tables leave, the datum fitted at each time, mm
   std::vector<double> maximum;  ///< [n] the same
   StateValues worst_state;      ///< where the maximum is largest
+  std::size_t outside = 0;      ///< times at which a state lies outside what the readings of the errors cover
 
-  std::size_t worst() const;  ///< index of the largest maximum
-  double rms_of_all() const;  ///< over all times and poses, mm
+  std::size_t worst() const;          ///< index of the largest maximum
+  double rms_of_all() const;          ///< over all times and poses, mm
+  std::string outside_words() const;  ///< a sentence about `outside`; empty: none
 };
 
 /// A file for the control, not yet written.

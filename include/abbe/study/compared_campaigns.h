@@ -59,6 +59,7 @@ struct IdentifiedCampaign {
 struct CompareRequest {
   std::vector<IdentifiedCampaign> campaigns;  ///< two to 26
   double level = 0.05;                        ///< --level-percent: of the family of errors of a pair, 0 to 0.5
+  std::vector<std::string> states{};          ///< --state: "ambient_degC=26.5", where the change is mapped
   std::vector<std::string> tolerances;        ///< --tolerance: "V_max_um=10", as apply_tolerances() takes them
   bool page = false;                          ///< the report is to have plots and the map, for its page
   bool curves = false;                        ///< the error motions are to have their curves, as for a page
@@ -70,7 +71,8 @@ struct CompareRequest {
 /// @throws InputError naming the file, or --machine for an errors file without a machine
 CompareRequest read_campaigns(const std::vector<std::string>& campaigns, const std::string& machine_file);
 /// The same of one campaign. @param machine  absent: machine.toml of its results folder
-IdentifiedCampaign read_campaign(const std::string& path, const std::optional<Machine>& machine);
+IdentifiedCampaign read_campaign(const std::string& path, const std::optional<Machine>& machine,
+                                 StatesOfErrors states = StatesOfErrors::refused);
 /// Makes names that are given twice different: by their paths, and if these are the same too, by a number.
 /// @param paths  [campaigns] or other words for them
 void make_names_different(std::vector<IdentifiedCampaign>& campaigns, const std::vector<std::string>& paths);
@@ -102,6 +104,7 @@ struct ComparedCurve {
 struct ComparedError {
   std::string name;   ///< "EXX", "EC0Y", "reversal_X", "tool_offset"
   std::string words;  ///< "positioning error motion of X"
+  std::string per{};  ///< of errors with a state: unit of its factor, "K" or "N m"; all values are per that unit
   std::size_t axis = 0;
   bool is_angle = false;
   bool is_motion = false;           ///< a function of the position of its axis: has a curve, a range and a place
@@ -148,6 +151,7 @@ struct ComparedCampaigns {
   Machine machine;                 ///< of the first campaign, with the travel that all have
   std::vector<std::string> names;  ///< of the campaigns, each once
   double level = 0.05;
+  StateValues at_state{};           ///< where the changes are mapped: as requested, else at the references
   std::vector<ComparedPair> pairs;  ///< each against the first; then each but the second against the one before
   EvaluationReport report;          ///< with the tolerances of the request
 
@@ -157,7 +161,9 @@ struct ComparedCampaigns {
 
 /// Compares campaigns. Opens no file and prints nothing.
 /// @param options  progress: pairs done of all
-/// @throws InputError for fewer than two campaigns, machines of different chains or axes, errors composed in different
+/// Errors with states are compared per unit of the factor of their state, as errors of their own.
+/// @throws InputError for fewer than two campaigns, machines of different chains, axes or states, errors composed in
+/// different
 ///   orders, a level that is not one, and as apply_tolerances()
 /// @throws Stopped
 ComparedCampaigns compare_campaigns(const CompareRequest& request, const JobOptions& options = {});

@@ -44,9 +44,11 @@ namespace abbe {
 
 /// Readings, and the errors that they are compared with. Messages name a field by the option of `abbe verify`.
 struct ReadingsToVerify {
-  Study study;                            ///< machine, set-ups and readings; what it identifies plays no part
-  ErrorsFile identified;                  ///< of this machine
-  std::string errors_file;                ///< name for texts and messages
+  Study study;              ///< machine, set-ups and readings; what it identifies plays no part
+  ErrorsFile identified;    ///< of this machine
+  std::string errors_file;  ///< name for texts and messages
+  /// [states of the machine] --state: values where the readings give none, NaN where not stated; empty: none
+  std::vector<double> states{};
   std::optional<double> least_reduction;  ///< --least-reduction: of the mean residual, times smaller; above zero
   std::optional<double> largest_ratio;    ///< --largest-ratio: to what the uncertainties explain; above zero
 };
@@ -77,7 +79,8 @@ struct VerifiedReadings {
   IndependentReadings judged;
   std::vector<ReadingsVerdict> verdicts;
   std::vector<std::string> warnings;
-  EvaluationReport report;  ///< kind "readings", with all of the above
+  std::vector<std::string> outside;  ///< states of readings beyond what the errors were measured at, a sentence each
+  EvaluationReport report;           ///< kind "readings", with all of the above
 
   /// Mean residual of the nominal machine over that with the identified errors; 0 without lengths.
   double reduction() const;
@@ -90,11 +93,13 @@ struct VerifiedReadings {
 /// Compares readings that took no part in an identification with its errors. Stations, reflectors and whatever else the
 /// study does not state of a set-up are fitted to these readings, with the errors held.
 ///
+/// Errors with states are taken at the state of each reading: from its columns, recorded channels, or the request.
+///
 /// Verdicts: residuals are smaller than without the errors; the uncertainties of readings and errors explain what is
 /// left (as Distrust does, with a probability of 1e-6); and what the request asks for.
 /// @param options  progress: steps done of three
 /// @throws InputError for readings that cannot be read, that do not determine their set-ups, or of which none is where
-///   the errors are known; Stopped
+///   the errors are known, or whose states are not given; Stopped
 VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptions& options = {});
 
 }  // namespace abbe

@@ -39,9 +39,9 @@ void AxisErrorBound::include(const AxisErrorBound& other) {
   turn_jumps += other.turn_jumps;
 }
 
-AxisErrorCells::AxisErrorCells(const Machine& machine, const ErrorSet& errors, std::size_t axis) {
+AxisErrorCells::AxisErrorCells(const Machine& machine, const ErrorSet& errors, std::size_t axis, std::size_t state) {
   for (const ErrorMotion& motion : errors.motions) {
-    if (motion.axis == axis) motions_.push_back(motion);
+    if (motion.axis == axis && motion.state == state) motions_.push_back(motion);
   }
   if (motions_.empty()) return;
   const Axis& moving = machine.axes[axis];

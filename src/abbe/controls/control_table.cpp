@@ -155,6 +155,7 @@ LossOverStates loss_over_states(const ControlTableRequest& request, const PoseLi
     loss.time_s.push_back(there.time_s);
     loss.rms.push_back(left.rms);
     loss.maximum.push_back(left.maximum);
+    loss.outside += there.at_state.outside.empty() ? 0U : 1U;
   }
   loss.worst_state = request.over[loss.worst()].at_state;
   return loss;
@@ -190,6 +191,13 @@ double LossOverStates::rms_of_all() const {
   double sum = 0;
   for (const double one : rms) sum += one * one / static_cast<double>(rms.size());
   return std::sqrt(sum);
+}
+
+std::string LossOverStates::outside_words() const {
+  if (outside == 0) return {};
+  return fmt::format(
+      "the states of {} lie outside what the readings cover at {} of {} times: the errors are extrapolated", record,
+      outside, time_s.size());
 }
 
 ControlTables make_control_tables(const ControlTableRequest& request) {

@@ -36,9 +36,10 @@ std::string errors_carried_text(const ControlTables& made) {
 std::string over_states_text(const LossOverStates& over) {
   const std::size_t worst = over.worst();
   return fmt::format(
-      "what they leave at {} states of {}: rms {:.3f} um over all; at most {:.3f} um, at {:.6g} s ({})\n",
-      over.time_s.size(), over.record, in_um(over.rms_of_all()), in_um(over.maximum[worst]), over.time_s[worst],
-      over.worst_state.empty() ? "no error depends on a state" : state_words(over.worst_state));
+             "what they leave at {} states of {}: rms {:.3f} um over all; at most {:.3f} um, at {:.6g} s ({})\n",
+             over.time_s.size(), over.record, in_um(over.rms_of_all()), in_um(over.maximum[worst]), over.time_s[worst],
+             over.worst_state.empty() ? "no error depends on a state" : state_words(over.worst_state)) +
+         (over.outside == 0 ? "" : "warning: " + over.outside_words() + "\n");
 }
 
 nlohmann::ordered_json over_states_json(const LossOverStates& over) {
@@ -48,6 +49,7 @@ nlohmann::ordered_json over_states_json(const LossOverStates& over) {
   json["maximum_um"] = in_um(over.maximum[over.worst()]);
   json["maximum_at_s"] = over.time_s[over.worst()];
   add_state(over.worst_state, json);
+  if (over.outside > 0) json["outside_measured"] = over.outside;
   json["states"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < over.time_s.size(); ++k) {
     json["states"].push_back(

@@ -6,12 +6,15 @@
 #include <cmath>
 #include <map>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/formats/files/file_name.h"
 #include "abbe/formats/files/results_files.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/machine/map_file.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/words/evaluation_text.h"
+#include "abbe/study/common_states.h"
 #include "abbe/study/compared_errors.h"
 #include "abbe/study/compared_report.h"
 #include "abbe/study/comparison_gauge.h"
@@ -53,7 +56,9 @@ void check_request(const CompareRequest& request) {
 /// change.
 class ChangeMap {
  public:
-  ChangeMap(const ComparisonModel& model, ComparedPair& pair) : machine_(model.machine), pair_(pair) {
+  /// @param states  [states] of measured and lag states, where the change is mapped
+  ChangeMap(const ComparisonModel& model, const std::vector<double>& states, ComparedPair& pair)
+      : machine_(model.machine), states_(states), pair_(pair) {
     errors_.composition = model.errors.composition;
     std::vector<Index> kept;
     for (std::size_t i = 0; i < model.list.size(); ++i) {
@@ -71,7 +76,16 @@ class ChangeMap {
       campaigns_[c].values = whole.values(kept);
       if (whole.covariance.size() > 0) campaigns_[c].covariance = whole.covariance(kept, kept);
     }
-    if (place_.back().size > 0) return;
+    if (place_.back().size == 0) take_out_tool();
+    if (!has_states(errors_)) return;
+    at_state(machine_, errors_, states_, &by_parameters_);
+    for (CampaignInModel& campaign : campaigns_) {
+      if (campaign.covariance.size() == 0) continue;
+      campaign.covariance = (by_parameters_ * campaign.covariance * by_parameters_.transpose()).eval();
+    }
+  }
+
+  void take_out_tool() {
     campaigns_[1].values.tail(3) = campaigns_[0].values.tail(3);
     for (CampaignInModel& campaign : campaigns_) {
       if (campaign.covariance.size() == 0) continue;
@@ -105,7 +119,7 @@ class ChangeMap {
         for (const ErrorMotion& term : model.terms(of)) errors_.motions.push_back(term);
         break;
       case ModelledError::Kind::location:
-        errors_.locations.push_back({.axis = of.axis, .component = of.component});
+        errors_.locations.push_back({.axis = of.axis, .component = of.component, .state = of.state});
         break;
       case ModelledError::Kind::reversal:
         errors_.reversals.push_back({.axis = of.axis});
@@ -118,7 +132,7 @@ class ChangeMap {
   ErrorSet errors(const Eigen::VectorXd& values) const {
     ErrorSet set = errors_;
     set.set_parameters(as_list(values));
-    return set;
+    return has_states(errors_) ? at_state(machine_, set, states_) : set;
   }
 
   ErrorMap mapped(const ErrorSet& actual, const ErrorSet& reference, const Eigen::MatrixXd* covariance) const {
@@ -162,8 +176,10 @@ class ChangeMap {
   }
 
   const Machine& machine_;
+  const std::vector<double>& states_;
   ComparedPair& pair_;
-  ErrorSet errors_;  // of what counts, at zero
+  ErrorSet errors_;                // of what counts, at zero
+  Eigen::MatrixXd by_parameters_;  // of the errors at the states
   std::vector<Place> place_;
   std::array<CampaignInModel, 2> campaigns_;
 };
@@ -182,8 +198,8 @@ void take_out_missing(const ComparisonModel& model, ComparedPair& pair) {
   pair.errors = std::move(kept);
 }
 
-ComparedPair compared_pair(const CompareRequest& request, const Machine& machine, std::size_t first,
-                           std::size_t second) {
+ComparedPair compared_pair(const CompareRequest& request, const Machine& machine, const std::vector<double>& states,
+                           std::size_t first, std::size_t second) {
   const IdentifiedCampaign &a = request.campaigns[first], &b = request.campaigns[second];
   ComparisonModel model = comparison_model(machine, a, b);
   ComparedPair pair;
@@ -195,9 +211,31 @@ ComparedPair compared_pair(const CompareRequest& request, const Machine& machine
   pair.conventions = std::move(gauge.conventions);
   compare_errors(
       model, {.level = request.level, .curves = request.page || request.curves, .one_gauge = !gauge.is_moved}, pair);
-  ChangeMap(model, pair).make();
+  ChangeMap(model, states, pair).make();
   take_out_missing(model, pair);
   return pair;
+}
+
+/// Values of measured and lag states where changes are mapped: as requested, else the references.
+std::vector<double> states_of_map(const CompareRequest& request, ComparedCampaigns& result) {
+  const Machine& machine = result.machine;
+  std::vector<double> values = state_options(machine, "--state", request.states);
+  for (const IdentifiedCampaign& campaign : request.campaigns) {
+    for (const std::string& sentence : values_outside_covered(machine, campaign.errors, values))
+      result.at_state.outside.push_back(campaign.name + ": " + sentence);
+  }
+  std::vector<std::uint8_t> used(values.size(), 0);
+  for (const IdentifiedCampaign& campaign : request.campaigns) {
+    const std::vector<std::uint8_t> own = used_states(campaign.machine, campaign.errors.errors);
+    for (std::size_t j = 0; j < own.size(); ++j) used[j] = used[j] != 0 || own[j] != 0 ? 1 : 0;
+  }
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    const MachineState& state = machine.states[j];
+    if (!is_input(state.kind)) continue;
+    if (!std::isfinite(values[j])) values[j] = state.reference;
+    if (used[j] != 0) result.at_state.emplace_back(state_column(state), values[j]);
+  }
+  return values;
 }
 
 }  // namespace
@@ -218,7 +256,8 @@ void make_names_different(std::vector<IdentifiedCampaign>& campaigns, const std:
   }
 }
 
-IdentifiedCampaign read_campaign(const std::string& path, const std::optional<Machine>& machine) {
+IdentifiedCampaign read_campaign(const std::string& path, const std::optional<Machine>& machine,
+                                 StatesOfErrors states) {
   const std::string results = is_results_folder(path) ? path : std::string();
   IdentifiedCampaign campaign;
   campaign.name = name_of_campaign(path);
@@ -228,7 +267,7 @@ IdentifiedCampaign read_campaign(const std::string& path, const std::optional<Ma
                      "a machine file for campaigns that are errors files, or results folders of abbe run");
   }
   campaign.machine = machine ? *machine : read_machine(file_of_results(results, "machine.toml"));
-  campaign.errors = read_errors(campaign.errors_file, campaign.machine);
+  campaign.errors = read_errors(campaign.errors_file, campaign.machine, states);
   return campaign;
 }
 
@@ -236,7 +275,8 @@ CompareRequest read_campaigns(const std::vector<std::string>& campaigns, const s
   CompareRequest request;
   std::optional<Machine> machine;
   if (!machine_file.empty()) machine = read_machine(machine_file);
-  for (const std::string& path : campaigns) request.campaigns.push_back(read_campaign(path, machine));
+  for (const std::string& path : campaigns)
+    request.campaigns.push_back(read_campaign(path, machine, StatesOfErrors::allowed));
   make_names_different(request.campaigns, campaigns);
   return request;
 }
@@ -258,11 +298,19 @@ bool ComparedCampaigns::is_judged() const {
   });
 }
 
-ComparedCampaigns compare_campaigns(const CompareRequest& request, const JobOptions& options) {
-  check_request(request);
-  for (const IdentifiedCampaign& one : request.campaigns) refuse_states(one.machine, one.errors.errors, "a comparison");
+ComparedCampaigns compare_campaigns(const CompareRequest& given, const JobOptions& options) {
+  check_request(given);
   ComparedCampaigns result;
-  result.machine = common_machine(request.campaigns);
+  result.machine = common_machine(given.campaigns);
+  const bool any_states = std::any_of(given.campaigns.begin(), given.campaigns.end(),
+                                      [](const auto& campaign) { return has_states(campaign.errors.errors); });
+  CompareRequest common;
+  if (any_states) {
+    common = given;
+    bring_to_common_states(result.machine, common.campaigns);
+  }
+  const CompareRequest& request = any_states ? common : given;
+  const std::vector<double> states = states_of_map(request, result);
   result.level = request.level;
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t k = 0; k < request.campaigns.size(); ++k) {
@@ -273,7 +321,7 @@ ComparedCampaigns compare_campaigns(const CompareRequest& request, const JobOpti
   const auto progress = stoppable_progress(options);
   for (const auto& [first, second] : pairs) {
     progress(result.pairs.size(), pairs.size());
-    result.pairs.push_back(compared_pair(request, result.machine, first, second));
+    result.pairs.push_back(compared_pair(request, result.machine, states, first, second));
   }
   progress(pairs.size(), pairs.size());
   write_comparison_report(request, result);

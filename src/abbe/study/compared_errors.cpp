@@ -7,6 +7,7 @@
 #include "abbe/errors/poses.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/distributions.h"
+#include "abbe/machine/state.h"
 
 namespace abbe {
 namespace {
@@ -92,6 +93,7 @@ class ErrorComparison {
     ComparedError error;
     error.name = of.name(model_.machine);
     error.words = of.words(model_.machine);
+    if (of.state != kNoState) error.per = factor_unit(model_.machine, of.state);
     error.axis = of.axis;
     error.is_angle = of.is_angle(model_.machine);
     error.is_motion = of.kind == ModelledError::Kind::motion;

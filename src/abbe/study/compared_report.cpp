@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/list_text.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/evaluations/machine_json.h"
@@ -79,7 +80,7 @@ class PairFigures {
   void add_largest(bool angle) {
     const ComparedError* largest = nullptr;
     for (const ComparedError& error : pair_.errors) {
-      if (error.is_angle != angle || !is_comparable(error.verdict)) continue;
+      if (error.is_angle != angle || !error.per.empty() || !is_comparable(error.verdict)) continue;
       if (largest == nullptr || std::abs(error.change) > std::abs(largest->change)) largest = &error;
     }
     if (largest == nullptr) return;
@@ -122,6 +123,8 @@ void add_facts(const CompareRequest& request, ComparedCampaigns& result) {
   }
   const ComparedPair& pair = result.pairs.front();
   if (pair.change.statistics.count > 0) report.facts.emplace_back("poses of the map", pair.stated.words);
+  if (!result.at_state.empty()) report.facts.emplace_back("state of the map", state_words(result.at_state));
+  for (const std::string& sentence : result.at_state.outside) report.notes.push_back(sentence + ".");
 }
 
 void add_notes_on_files(const CompareRequest& request, EvaluationReport& report) {

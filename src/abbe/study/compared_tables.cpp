@@ -21,6 +21,11 @@ std::string micro_text(double value, bool angle) {
 
 const char* micro_symbol(bool angle) { return angle ? "\xC2\xB5rad" : "\xC2\xB5m"; }
 
+/// "\xC2\xB5m", "\xC2\xB5rad / K".
+std::string unit_text(const ComparedError& error) {
+  return micro_symbol(error.is_angle) + (error.per.empty() || error.per == "1" ? std::string() : " / " + error.per);
+}
+
 std::string probability_text(double probability) {
   return probability < kSmallestProbability ? "< 0.0001" : fmt::format("{:.4f}", probability);
 }
@@ -80,7 +85,7 @@ EvaluationTable table_of_pairs(const ComparedCampaigns& result, const std::strin
     }
   }
   for (const ComparedError* const named : names) {
-    std::vector<std::string> row = {named->name, named->words, micro_symbol(named->is_angle)};
+    std::vector<std::string> row = {named->name, named->words, unit_text(*named)};
     for (const ComparedPair* const pair : pairs) {
       const auto found = std::find_if(pair->errors.begin(), pair->errors.end(), [&](const ComparedError& one) {
         return one.name == named->name && is_comparable(one.verdict);
@@ -110,6 +115,7 @@ nlohmann::ordered_json error_details(const Machine& machine, const ComparedError
   nlohmann::ordered_json json;
   json["name"] = error.name;
   json["words"] = error.words;
+  if (!error.per.empty()) json["per"] = error.per;
   json["verdict"] = change_verdict_name(error.verdict);
   if (!is_comparable(error.verdict)) return json;
   json["change" + unit] = micro_number(error.change, angle);
@@ -199,7 +205,7 @@ EvaluationTable table_of_changes(const ComparedCampaigns& result, const Compared
     table.rows.push_back({error->name, error->words, micro_text(error->value[0], angle),
                           micro_text(error->value[1], angle), micro_text(error->change, angle),
                           error->expanded_uncertainty ? micro_text(*error->expanded_uncertainty, angle) : "",
-                          micro_symbol(angle), place_text(result.machine, *error),
+                          unit_text(*error), place_text(result.machine, *error),
                           error->chi_square ? probability_text(error->probability) : "",
                           error->chi_square ? probability_text(error->adjusted) : "", micro_text(error->at_tool, false),
                           verdict_words(error->verdict)});

@@ -24,12 +24,12 @@ struct TermsOfFile {
   Index size() const { return static_cast<Index>(parameters.size()); }
 };
 
-TermsOfFile terms_of_file(const ErrorSet& errors, std::size_t axis, Component component) {
+TermsOfFile terms_of_file(const ErrorSet& errors, std::size_t axis, Component component, std::size_t state) {
   TermsOfFile found;
   Index next = 0;
   for (const ErrorMotion& motion : errors.motions) {
     const Index size = static_cast<Index>(motion.coefficients.size());
-    if (motion.axis == axis && motion.component == component) {
+    if (motion.axis == axis && motion.component == component && motion.state == state) {
       found.terms.push_back(motion);
       for (Index k = 0; k < size; ++k) found.parameters.push_back(next + k);
     }
@@ -103,29 +103,29 @@ class ModelBuilder {
   void add_motions() {
     for (std::size_t c = 0; c < 2; ++c) {
       for (const ErrorMotion& motion : errors(c).motions) {
-        const bool seen = std::any_of(done_.begin(), done_.end(), [&](const auto& one) {
-          return one.first == motion.axis && one.second == motion.component;
+        const bool seen = std::any_of(model_.list.begin(), model_.list.end(), [&](const ModelledError& one) {
+          return one.axis == motion.axis && one.component == motion.component && one.state == motion.state;
         });
-        if (seen) continue;
-        done_.emplace_back(motion.axis, motion.component);
-        add_motion(motion.axis, motion.component);
+        if (!seen) add_motion(motion.axis, motion.component, motion.state);
       }
     }
   }
 
-  void add_motion(std::size_t axis, Component component) {
-    const std::array<TermsOfFile, 2> of = {terms_of_file(errors(0), axis, component),
-                                           terms_of_file(errors(1), axis, component)};
+  void add_motion(std::size_t axis, Component component, std::size_t state) {
+    const std::array<TermsOfFile, 2> of = {terms_of_file(errors(0), axis, component, state),
+                                           terms_of_file(errors(1), axis, component, state)};
     ErrorSet both;
     for (const TermsOfFile& one : of) both.motions.insert(both.motions.end(), one.terms.begin(), one.terms.end());
     AxisRange range = full_ranges(model_.machine, 2)[axis];
     const double travel = range.to - range.from;
     narrow_to_known_range(both, axis, range);
     if (!(range.to - range.from > 1e-9 * travel)) {
-      model_.apart.push_back(error_motion_name(model_.machine, axis, component));
+      const std::string name = error_motion_name(model_.machine, axis, component, state);
+      if (std::find(model_.apart.begin(), model_.apart.end(), name) == model_.apart.end()) model_.apart.push_back(name);
       return;
     }
-    ModelledError error{.kind = ModelledError::Kind::motion, .axis = axis, .component = component, .first = next_};
+    ModelledError error{
+        .kind = ModelledError::Kind::motion, .axis = axis, .component = component, .state = state, .first = next_};
     error.is_in = {!of[0].terms.empty(), !of[1].terms.empty()};
     error.from = range.from;
     error.to = range.to;
@@ -197,7 +197,7 @@ class ModelBuilder {
   std::optional<Index> location_at(std::size_t c, const LocationError& wanted) const {
     const std::vector<LocationError>& all = errors(c).locations;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (all[i].axis == wanted.axis && all[i].component == wanted.component) {
+      if (all[i].axis == wanted.axis && all[i].component == wanted.component && all[i].state == wanted.state) {
         return behind_motions(errors(c)) + static_cast<Index>(i);
       }
     }
@@ -218,10 +218,13 @@ class ModelBuilder {
     for (std::size_t c = 0; c < 2; ++c) {
       for (const LocationError& location : errors(c).locations) {
         if (c == 1 && location_at(0, location)) continue;
-        const ModelledError error{
-            .kind = ModelledError::Kind::location, .axis = location.axis, .component = location.component};
+        const ModelledError error{.kind = ModelledError::Kind::location,
+                                  .axis = location.axis,
+                                  .component = location.component,
+                                  .state = location.state};
         add_single(error, {location_at(0, location), location_at(1, location)});
-        model_.errors.locations.push_back({.axis = location.axis, .component = location.component});
+        model_.errors.locations.push_back(
+            {.axis = location.axis, .component = location.component, .state = location.state});
       }
     }
     for (std::size_t c = 0; c < 2; ++c) {
@@ -260,7 +263,6 @@ class ModelBuilder {
 
   std::array<const ErrorsFile*, 2> files_;
   ComparisonModel model_;
-  std::vector<std::pair<std::size_t, Component>> done_;
   std::vector<Rows> rows_;
   Index next_ = 0;
 };
@@ -283,9 +285,9 @@ bool ModelledError::is_angle(const Machine& machine) const {
 std::string ModelledError::name(const Machine& machine) const {
   switch (kind) {
     case Kind::motion:
-      return error_motion_name(machine, axis, component);
+      return error_motion_name(machine, axis, component, state);
     case Kind::location:
-      return location_error_name(machine, axis, component);
+      return location_error_name(machine, axis, component, state);
     case Kind::reversal:
       return reversal_name(machine, axis);
     case Kind::tool_offset:
@@ -298,7 +300,8 @@ std::string ModelledError::words(const Machine& machine) const {
   switch (kind) {
     case Kind::motion:
     case Kind::location:
-      return error_words(machine, axis, component, kind == Kind::location);
+      return error_words(machine, axis, component, kind == Kind::location) +
+             (state == kNoState ? std::string() : " with " + machine.states[state].name);
     case Kind::reversal:
       return "reversal value of " + machine.axes[axis].name;
     case Kind::tool_offset:
@@ -308,7 +311,7 @@ std::string ModelledError::words(const Machine& machine) const {
 }
 
 std::vector<ErrorMotion> ComparisonModel::terms(const ModelledError& error) const {
-  return terms_of_file(errors, error.axis, error.component).terms;
+  return terms_of_file(errors, error.axis, error.component, error.state).terms;
 }
 
 std::vector<double> as_list(const Eigen::VectorXd& values) { return {values.data(), values.data() + values.size()}; }

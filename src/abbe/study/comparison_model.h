@@ -22,6 +22,7 @@ struct ModelledError {
   Kind kind = Kind::motion;
   std::size_t axis = 0;
   Component component = Component::X;
+  std::size_t state = kNoState;      ///< of motions and locations; index into the states of the model's machine
   Eigen::Index first = 0, size = 1;  ///< parameters
   std::array<bool, 2> is_in{};       ///< whether the files have it
   double from = 0, to = 0;           ///< of motions: range that both know, or the one that has it, mm or rad
@@ -43,6 +44,8 @@ struct CampaignInModel {
 /// An error motion has the functions of the campaign that has fewer of them, over the range that both know. The
 /// function of the other campaign is replaced by the nearest one (least squares over that range); values and covariance
 /// follow by the same linear map. So a shape that only one campaign could describe is not taken for a change.
+///
+/// Terms with a state are an error of their own, per unit of the factor of the state.
 ///
 /// An error that a file does not have is zero there without variance, as one that a convention sets. It can do what
 /// others do: a squareness that is in one file may be a slope in the other. bring_into_one_gauge() finds that out.

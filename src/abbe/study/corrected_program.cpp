@@ -47,15 +47,21 @@ void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& c
   std::vector<bool> moved;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) moved.push_back(request.words.moves(i));
   const auto at = [&](const ProgramPlace& place) {
-    return place.line == 0 ? PlaceUncertainty{} : uncertainty_at(machine, errors, covariance, place, moved);
+    if (place.line == 0) return PlaceUncertainty{};
+    std::vector<double> sides;
+    for (const MachineState& state : machine.states) {
+      sides.push_back(state.kind == StateKind::approach ? place.approach[state.axis] : 0.0);
+    }
+    return uncertainty_at(machine, errors, covariance, place, moved, sides);
   };
   result.largest = at(result.report.largest_shift);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) result.by_axis.push_back(at(result.report.by_axis[i]));
   for (const ReversalAxis& axis : result.reversals) {
+    result.reversal_uncertainty.push_back(0);
     auto parameter = static_cast<Eigen::Index>(first_reversal(errors));
     for (const Reversal& reversal : errors.reversals) {
       if (reversal.axis == axis.axis)
-        result.reversal_uncertainty.push_back(std::sqrt(std::max(0.0, covariance(parameter, parameter))));
+        result.reversal_uncertainty.back() = std::sqrt(std::max(0.0, covariance(parameter, parameter)));
       ++parameter;
     }
   }
@@ -66,7 +72,10 @@ void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& c
 CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,
                                  const std::function<void(std::string_view text)>& write,
                                  const std::function<void(std::size_t end)>& done, const std::stop_token& stop) {
-  refuse_states(request.machine, request.errors, "a correction of programs");
+  refuse_states(request.machine, request.errors, "a correction of programs", UsableStates::of_motions);
+  if (request.leave_out_factor > 0) {
+    refuse_states(request.machine, request.errors, "--leave-out-below-uncertainty");
+  }
   check_program_request(request);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   const Machine& machine = request.machine;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "abbe/errors/actual_pose.h"
+#include "abbe/errors/error_states.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/singular_values.h"
 #include "abbe/instruments/measurement_plan.h"
@@ -69,9 +70,47 @@ Eigen::MatrixXd pose_derivatives(const Machine& machine, const ErrorSet& errors,
   return derivatives;
 }
 
+/// Errors without a state, and where their parameters are among those of all.
+ErrorSet without_states(const ErrorSet& errors, std::vector<Index>& at) {
+  ErrorSet plain = errors;
+  plain.motions.clear();
+  plain.locations.clear();
+  Index next = 0;
+  const auto take = [&](bool is_plain, std::size_t size) {
+    for (std::size_t k = 0; k < size; ++k, ++next) {
+      if (is_plain) at.push_back(next);
+    }
+  };
+  for (const ErrorMotion& motion : errors.motions) {
+    if (motion.state == kNoState) plain.motions.push_back(motion);
+    take(motion.state == kNoState, motion.coefficients.size());
+  }
+  for (const LocationError& location : errors.locations) {
+    if (location.state == kNoState) plain.locations.push_back(location);
+    take(location.state == kNoState, 1);
+  }
+  take(true, errors.parameter_count() - static_cast<std::size_t>(next));
+  return plain;
+}
+
+Eigen::VectorXd spread(const Eigen::VectorXd& values, const std::vector<Index>& at, std::size_t size) {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Index>(size));
+  for (std::size_t k = 0; k < at.size(); ++k) all[at[k]] = values[static_cast<Index>(k)];
+  return all;
+}
+
 }  // namespace
 
 std::vector<GaugeConstraint> pose_conventions(const Machine& machine, const ErrorSet& structure) {
+  if (has_states(structure)) {
+    std::vector<Index> at;
+    std::vector<GaugeConstraint> conventions = pose_conventions(machine, without_states(structure, at));
+    for (GaugeConstraint& constraint : conventions) {
+      constraint.functional = spread(constraint.functional, at, structure.parameter_count());
+      constraint.direction = spread(constraint.direction, at, structure.parameter_count());
+    }
+    return conventions;
+  }
   const ErrorSet errors = at_zero(structure);
   const std::vector<AxisRange> ranges = common_known_ranges(machine, {&errors}, 2);
   if (std::any_of(ranges.begin(), ranges.end(), [](const AxisRange& range) { return range.to < range.from; })) {

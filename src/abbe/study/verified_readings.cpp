@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "abbe/errors/error_states.h"
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/trust/trust.h"
@@ -59,6 +61,48 @@ std::vector<std::uint8_t> covered_readings(const ErrorSet& errors, const PoseLis
   return covered;
 }
 
+/// Gives one set-up the values of the request for states that its readings do not give.
+void give_states(const ReadingsToVerify& request, CampaignSetup& setup) {
+  const Machine& machine = request.study.machine;
+  PoseList& poses = setup.readings.poses;
+  for (std::size_t j = 0; j < request.states.size(); ++j) {
+    if (!std::isfinite(request.states[j])) continue;
+    const std::string column = state_column(machine.states[j]);
+    if (j < poses.state.size() && !poses.state[j].empty()) {
+      throw InputError({.field = "--state " + column}, "the readings of '" + setup.name + "' have this state",
+                       "an option only for states that the readings do not give");
+    }
+    poses.state.resize(machine.states.size());
+    poses.state[j].assign(poses.count(), request.states[j]);
+  }
+}
+
+/// Every reading gets its state; says where that is unknown or beyond what the errors were measured at.
+void take_states(const ReadingsToVerify& request, Campaign& campaign, VerifiedReadings& result) {
+  const Machine& machine = request.study.machine;
+  const ErrorSet& errors = request.identified.errors;
+  const std::vector<std::uint8_t> used = used_states(machine, errors);
+  for (CampaignSetup& setup : campaign.setups) {
+    give_states(request, setup);
+    const std::size_t missing = missing_state(machine, errors, setup.poses());
+    if (missing != kNoState) {
+      const std::string column = state_column(machine.states[missing]);
+      throw InputError(
+          {.file = setup.name},
+          fmt::format("the errors depend on {}, which is not given at all readings", machine.states[missing].name),
+          fmt::format("a column {} in the readings, a channel, or --state {}=VALUE", column, column));
+    }
+    for (std::size_t j = 0; j < used.size(); ++j) {
+      if (used[j] == 0 || machine.states[j].kind != StateKind::approach || !setup.poses().approach.empty()) continue;
+      result.warnings.push_back(fmt::format("{}: the readings do not say from which side {} came: the mean of both",
+                                            setup.name, machine.axes[machine.states[j].axis].name));
+    }
+    for (const std::string& sentence : states_outside_covered(machine, request.identified, setup.poses()))
+      result.outside.push_back(setup.name + ": " + sentence);
+  }
+  result.warnings.insert(result.warnings.end(), result.outside.begin(), result.outside.end());
+}
+
 void judge(const ReadingsToVerify& request, VerifiedReadings& result) {
   const auto add = [&](const char* name, bool met, std::string text) {
     result.verdicts.push_back({name, std::move(text), met});
@@ -107,7 +151,7 @@ double VerifiedReadings::ratio() const {
 }
 
 LeftOutPoses VerifiedReadings::left_out() const {
-  return {.all = readings, .not_covered = not_covered, .what = "readings"};
+  return {.all = readings, .not_covered = not_covered, .what = "readings", .extrapolated = outside};
 }
 
 bool VerifiedReadings::says_no() const {
@@ -115,7 +159,6 @@ bool VerifiedReadings::says_no() const {
 }
 
 VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptions& options) {
-  refuse_states(request.study.machine, request.identified.errors, "a verification by readings");
   require_condition("--least-reduction", request.least_reduction);
   require_condition("--largest-ratio", request.largest_ratio);
   const auto progress = stoppable_progress(options);
@@ -125,6 +168,7 @@ VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptio
   find_start_values(request.study.machine, campaign);
 
   VerifiedReadings result;
+  take_states(request, campaign, result);
   const ErrorSet& identified = request.identified.errors;
   std::vector<std::vector<std::uint8_t>> use;
   for (const CampaignSetup& setup : campaign.setups) {
@@ -136,7 +180,7 @@ VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptio
     throw InputError({.file = request.study.name}, "no reading is where all errors are known",
                      "readings within the ranges of the error motions in " + request.errors_file);
   }
-  result.warnings = campaign.warnings;
+  result.warnings.insert(result.warnings.begin(), campaign.warnings.begin(), campaign.warnings.end());
   progress(1, kSteps);
   const FittedSetups nominal(request, campaign, ErrorSet{}, use);
   progress(2, kSteps);

@@ -46,11 +46,19 @@ class MoveSplitter {
   bool split(const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance, const CorrectedNode& start,
              const CorrectedNode& end);
 
+  /// The same of a part of a move whose ends are corrected after these approaches.
+  /// @param from, to  shares of the move where it begins and ends
+  bool split_part(const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance,
+                  const AxisApproach& approach, const CorrectedNode& start, double from, const CorrectedNode& end,
+                  double to);
+
   /// Start, ends of pieces, end; of the last move.
   const std::vector<CorrectedNode>& nodes() const { return nodes_; }
   const std::vector<double>& shares() const { return at_; }  ///< [nodes] s of each, from 0 to 1
 
  private:
+  bool refine(const MovePath& path, const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance,
+              const AxisApproach& approach);
   void part_at_travel(const MovePath& path, ProgramCoordinates coordinates, std::size_t tool);
 
   const NodeCorrection* correction_;

@@ -6,10 +6,13 @@
 #include <vector>
 
 #include "abbe/compensate/axis_error_bound.h"
+#include "abbe/compensate/program/factor_bounds.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
+
+struct ErrorAlong;
 
 /// Distances of the functional point, on its way through the nominal chain, from what each axis turns about; mm.
 struct ChainLevers {
@@ -86,6 +89,17 @@ class PieceBounder {
   void levers(const double* positions, const Eigen::Vector3d& tool, ChainLevers& result) const;
 
  private:
+  /// Location errors of an axis: what they do to its line, per unit of the factor of their state.
+  struct LineError {
+    double turn = 0;           ///< rad, of the axis direction
+    double shift = 0;          ///< mm, of its place
+    double zero_position = 0;  ///< mm or rad
+  };
+  struct StateErrors {
+    std::size_t state;
+    AxisErrorCells motions;
+    LineError line;
+  };
   struct AxisModel {
     AxisModel(const Machine& machine, const ErrorSet& error_set, std::size_t axis)
         : rotary(machine.axes[axis].kind == AxisKind::rotary),
@@ -93,10 +107,9 @@ class PieceBounder {
           errors(machine, error_set, axis) {}
     bool rotary, tool_side;
     AxisErrorCells errors;
-    double line_turn = 0;      ///< rad, of the axis direction
-    double line_shift = 0;     ///< mm, of its place
-    double zero_position = 0;  ///< mm or rad
-    bool run_begins = false;   ///< first linear axis, from the tool, of those with no rotary one between
+    LineError line;
+    std::vector<StateErrors> with_state;
+    bool run_begins = false;  ///< first linear axis, from the tool, of those with no rotary one between
     std::vector<std::size_t> run;
     double run_stretch = 1;  ///< largest singular value of the run's directions
     bool bends = false;      ///< X, Y or Z belongs to this run
@@ -104,7 +117,18 @@ class PieceBounder {
   struct Stage {
     double speed = 0, bend = 0;
   };
+  /// The line of an axis along a piece, all states together; as LineError.
+  struct LineAlong {
+    BoundAlong turn, shift, zero_position;
+  };
   struct Passing;
+  static LineError line_error(const Machine& machine, const ErrorSet& errors, std::size_t axis, std::size_t state);
+  void add_states(const Machine& machine, const ErrorSet& errors);
+  LineAlong line_along(const AxisModel& axis, const Passing& at) const;
+  ErrorAlong error_along(std::size_t i, double bend, Passing& at, double length) const;
+  void set_states(Passing& at) const;
+  double own_bend_of(std::size_t i, const Passing& at) const;
+  void pass_run(const AxisModel& axis, Passing& at) const;
   void pass_rotary(std::size_t i, Passing& at) const;
   void pass_linear(std::size_t i, Passing& at) const;
   void set_point_axes();
@@ -114,6 +138,7 @@ class PieceBounder {
 
   Machine machine_;
   std::vector<AxisModel> axes_;
+  FactorBounds factors_;
   PlayBounds play_;
   double tool_error_ = 0;
   std::array<std::size_t, 3> point_axes_;  ///< chain order

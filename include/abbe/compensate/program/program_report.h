@@ -18,7 +18,7 @@ struct ProgramPlace {
   std::array<double, kMaxAxes> corrected{};  ///< commands that reach the same with the errors
   std::array<double, 3> tool_length{};       ///< mm, in force there
   CorrectionStatus status = CorrectionStatus::not_run;
-  AxisApproach approach{};  ///< directions of the last motions, of axes with reversal values
+  AxisApproach approach{};  ///< directions of the last motions, of axes whose directions are followed
 
   bool take(const ProgramPlace& other);  ///< keeps the larger; the earlier of equal ones
 };
@@ -58,7 +58,7 @@ struct ProgramReport {
   StatusCount tool_changes;         ///< moves that begin where the machine stood with another tool length
   StatusCount inverse_time;         ///< moves per minute with pieces whose duration needs inverse time
   StatusCount above_limit;          ///< ends where the point's correction is above the limit
-  std::array<StatusCount, kMaxAxes> take_ups;           ///< of axes with reversal values, where they turn round
+  std::array<StatusCount, kMaxAxes> take_ups;  ///< of axes whose directions are followed, where they turn round
   std::array<StatusCount, kMaxAxes> direction_unknown;  ///< poses before the axis has moved
   /// Words that move an axis that the machine does not have, or tool centre moves it cannot make.
   StatusCount impossible;

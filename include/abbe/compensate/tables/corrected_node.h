@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/compensate/axis_directions.h"
 #include "abbe/compensate/compensated_inverse.h"
 #include "abbe/compensate/program/program_move.h"
 #include "abbe/compensate/program/word_axes.h"
@@ -48,7 +49,15 @@ class NodeCorrection {
   const Eigen::Vector3d& tool_point(std::size_t tool) const { return tools_[tool].point; }
 
   /// Fills everything but `words`.
-  void correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes) const;
+  /// @param approach  from which sides the axes come; 0: the mean of both
+  void correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes,
+               const AxisApproach& approach = {}) const;
+
+  /// Whether errors depend on the side from which axes come.
+  bool has_approaches() const { return !approaches_.empty(); }
+  /// The node for the errors after these approaches.
+  CorrectedNode after(ProgramCoordinates coordinates, std::size_t tool, const CorrectedNode& node,
+                      const AxisApproach& approach) const;
 
   /// A corrected node whose axes get something more, by their nominal kinematics in tool centre programs. Where that
   /// leads out of the travel they are kept at its end, and the status says so.
@@ -65,13 +74,15 @@ class NodeCorrection {
     Eigen::Vector3d point;
     std::unique_ptr<CompensatedInverse> inverse;
   };
-  void correct_block(ProgramCoordinates coordinates, const Tool& tool, std::span<CorrectedNode> nodes) const;
+  void correct_block(ProgramCoordinates coordinates, const Tool& tool, const AxisApproach& approach,
+                     std::span<CorrectedNode> nodes) const;
 
   Machine machine_;
   ErrorSet errors_;
   CorrectionOptions options_;
   WordKinematics kinematics_;
   std::vector<std::size_t> held_;
+  std::vector<std::size_t> approaches_;  ///< states of the kind approach that the errors use
   ChainPlan nominal_;
   std::vector<Tool> tools_;
   std::string problem_;

@@ -76,7 +76,8 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
 /// States that a job takes into account by itself.
 enum class UsableStates {
   none,
-  of_commands  ///< those that follow from the commands at a pose: of the kinds axis and gravity, and products of these
+  of_commands,  ///< those that follow from the commands at a pose: of the kinds axis and gravity, and products of these
+  of_motions    ///< these, sides of approach, and products of any of them
 };
 
 /// Refuses errors that depend on other states, in a job that cannot take them into account.

@@ -253,7 +253,9 @@ void ChunkCorrection::give_move(const ProgramMove& move, const ProgramMove* earl
     return;
   }
   MoveSplitter& splitter = *chunk.splitter;
-  if (!splitter.split(move, chunk.tool[i], tolerance_of(move), start, end)) chunk.report.not_proven.add(move.line);
+  if (!splitter.split(move, chunk.tool[i], tolerance_of(move), start, end)) {
+    chunk.report.not_proven.add(move.line);
+  }
   if (splitter.nodes().size() > 2) ++chunk.report.split_moves;
   pieces_of_batch_ += splitter.nodes().size() - 1;
   give_nodes(move, splitter.nodes(), splitter.shares(), chunk);
@@ -305,17 +307,52 @@ bool ChunkCorrection::turns_with_spindle(const ProgramMove& move, std::size_t i,
   });
 }
 
-void ChunkCorrection::give_steps(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const {
-  const ProgramWay& way = chunk.way;
-  if (way.first[i] == way.first[i + 1]) {
+ProgramWay ChunkCorrection::way_after_approaches(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const {
+  const ProgramWay& mean = chunk.way;
+  const std::size_t first = mean.first[i], last = mean.first[i + 1], tool = chunk.tool[i];
+  ProgramWay way;
+  way.nodes = {mean.nodes[first]};
+  way.shares = {mean.shares[first]};
+  way.approach = {mean.approach[first]};
+  bool proven = true;
+  for (std::size_t k = first + 1; k < last; ++k) {
+    const AxisApproach& approach = mean.approach[k];
+    const CorrectedNode from = correction_.after(move.coordinates, tool, mean.nodes[k - 1], approach);
+    const CorrectedNode to = correction_.after(move.coordinates, tool, mean.nodes[k], approach);
+    // Moves with the spindle are not split, and what is not reached is not proven.
+    if (move.spindle == SpindleMove::none && proven && from.point_reached() && to.point_reached()) {
+      MoveSplitter& splitter = *chunk.splitter;
+      proven =
+          splitter.split_part(move, tool, tolerance_of(move), approach, from, mean.shares[k - 1], to, mean.shares[k]);
+      for (std::size_t n = 1; n + 1 < splitter.nodes().size(); ++n) {
+        way.nodes.push_back(splitter.nodes()[n]);
+        way.shares.push_back(splitter.shares()[n]);
+        way.approach.push_back(approach);
+      }
+    }
+    way.nodes.push_back(mean.nodes[k]);
+    way.shares.push_back(mean.shares[k]);
+    way.approach.push_back(approach);
+  }
+  if (!proven) chunk.report.not_proven.add(move.line);
+  way.first = {0, way.nodes.size()};
+  return way;
+}
+
+void ChunkCorrection::give_steps(const ProgramMove& move, std::size_t index, ProgramChunk& chunk) const {
+  if (chunk.way.first[index] == chunk.way.first[index + 1]) {
     chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
     return;
   }
+  ProgramWay after;
+  if (correction_.has_approaches()) after = way_after_approaches(move, index, chunk);
+  const ProgramWay& way = correction_.has_approaches() ? after : chunk.way;
+  const std::size_t i = correction_.has_approaches() ? 0 : index;
   if (turns_with_spindle(move, i, way)) chunk.report.play_with_spindle.add(move.line);
   const double duration = move_duration(move);
-  reversals_.steps(correction_, move, chunk.tool[i], way, i, chunk.steps);
+  reversals_.steps(correction_, move, chunk.tool[index], way, i, chunk.steps);
   WordValues at =
-      reversals_.commanded(correction_, move, chunk.tool[i], way.nodes[way.first[i]], way.approach[way.first[i]])
+      reversals_.commanded(correction_, move, chunk.tool[index], way.nodes[way.first[i]], way.approach[way.first[i]])
           .corrected;
   for (const ProgramStep& step : chunk.steps) {
     const double share = way.shares[step.to] - way.shares[step.to - 1];
@@ -325,9 +362,8 @@ void ChunkCorrection::give_steps(const ProgramMove& move, std::size_t i, Program
         if (step.approach[axis.axis] == 0) chunk.report.direction_unknown[axis.axis].add(move.line);
       }
     } else {
-      const bool rotary = machine_.axes[step.taken_up].kind == AxisKind::rotary;
       CorrectedPiece piece{step.node.corrected, move.feed, move.feed_mode};
-      set_take_up_feed(move, rotary, step.way, duration * share,
+      set_take_up_feed(move, step.rotary, step.way, duration * share,
                        reversals_.moved(way.nodes[step.to - 1], way.nodes[step.to]), piece);
       if (piece.feed_mode != move.feed_mode) chunk.report.inverse_time.add(move.line);
       // Between moves of a cycle or two, LinuxCNC 2.9 loses its way where it may round corners (docs/programs.md).

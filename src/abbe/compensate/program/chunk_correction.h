@@ -83,7 +83,9 @@ class ChunkCorrection {
   /// Whether an axis with a reversal value turns round in a move with the spindle: where it begins, or where a tap
   /// does.
   bool turns_with_spindle(const ProgramMove& move, std::size_t i, const ProgramWay& way) const;
-  void give_steps(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const;
+  /// The way of one move as it is when the sides of approach are known: its pieces are proven again, or split.
+  ProgramWay way_after_approaches(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const;
+  void give_steps(const ProgramMove& move, std::size_t index, ProgramChunk& chunk) const;
 
   Machine machine_;
   WordAxes words_;

@@ -109,11 +109,25 @@ void MoveSplitter::part_at_travel(const MovePath& path, ProgramCoordinates coord
 bool MoveSplitter::split(const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance,
                          const CorrectedNode& start, const CorrectedNode& end) {
   const MovePath path(move);
-  const Eigen::Vector3d& tool_point = correction_->tool_point(tool);
   nodes_.assign({start, end});
   at_.assign({0.0, 1.0});
   proven_.assign(1, 0);
   if (start.point_reached() != end.point_reached()) part_at_travel(path, move.coordinates, tool);
+  return refine(path, move, tool, tolerance, {});
+}
+
+bool MoveSplitter::split_part(const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance,
+                              const AxisApproach& approach, const CorrectedNode& start, double from,
+                              const CorrectedNode& end, double to) {
+  nodes_.assign({start, end});
+  at_.assign({from, to});
+  proven_.assign(1, 0);
+  return refine(MovePath(move), move, tool, tolerance, approach);
+}
+
+bool MoveSplitter::refine(const MovePath& path, const ProgramMove& move, std::size_t tool,
+                          const PathTolerance& tolerance, const AxisApproach& approach) {
+  const Eigen::Vector3d& tool_point = correction_->tool_point(tool);
   for (;;) {
     parts_.assign(proven_.size(), 1);
     fresh_.clear();
@@ -136,10 +150,10 @@ bool MoveSplitter::split(const ProgramMove& move, std::size_t tool, const PathTo
     }
     if (fresh_.empty()) return true;
     if (nodes_.size() + fresh_.size() > largest_pieces_) return false;
-    correction_->correct(move.coordinates, tool, fresh_);
+    correction_->correct(move.coordinates, tool, fresh_, approach);
 
     next_.assign(1, nodes_[0]);
-    next_at_.assign(1, 0.0);
+    next_at_.assign(1, at_[0]);
     next_proven_.clear();
     std::size_t used = 0;
     for (std::size_t k = 0; k < proven_.size(); ++k) {

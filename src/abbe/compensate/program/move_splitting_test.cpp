@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "abbe/compensate/machine_with_play_for_test.h"
-#include "abbe/compensate/program/program_moves_for_test.h"
+#include "abbe/compensate/program/random_moves_for_test.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
@@ -19,67 +19,6 @@ struct Ratios {
     return all.empty() ? 0 : all[all.size() / 2];
   }
 };
-
-/// Random move in words of the wanted coordinates, a straight line or an arc, of any length.
-ProgramMove random_move(const Machine& machine, const WordKinematics& kinematics, ProgramCoordinates coordinates,
-                        std::mt19937_64& generator) {
-  std::uniform_real_distribution<double> exponent(-4, 0);
-  const WordAxes& words = kinematics.words();
-  ProgramMove move;
-  move.kind = MoveKind::straight;
-  move.coordinates = coordinates;
-  if (generator() % 3 == 0) move.tool_length = {0, 0, 60};
-  const auto to_words = [&](const WordValues& axis_words) {
-    if (coordinates == ProgramCoordinates::axes) return axis_words;
-    const test::ControlledMachine control(machine, {}, words);
-    ProgramMove on_axes = move;
-    on_axes.coordinates = ProgramCoordinates::axes;
-    WordValues result = axis_words;
-    const Eigen::Vector3d point = control.pose(on_axes, axis_words, false).translation;
-    for (std::size_t i = 0; i < 3; ++i) result[i] = point[static_cast<Eigen::Index>(i)];
-    return result;
-  };
-  const WordValues a = test::random_axis_words(machine, words, generator);
-  WordValues b = test::random_axis_words(machine, words, generator);
-  if (generator() % 3 == 0) {
-    for (std::size_t i = 3; i < 6; ++i) b[i] = a[i];  // three-axis motion
-  }
-  move.start = to_words(a);
-  move.end = to_words(test::between(a, b, std::pow(10, exponent(generator))));
-  if (generator() % 3 == 0) {
-    move.kind = generator() % 2 == 0 ? MoveKind::arc_clockwise : MoveKind::arc_counterclockwise;
-    move.plane = static_cast<ArcPlane>(generator() % 3);
-    std::normal_distribution<double> normal;
-    // A centre on the perpendicular bisector of the chord, in the plane.
-    const std::size_t first = move.plane == ArcPlane::XY ? 0 : move.plane == ArcPlane::ZX ? 2 : 1;
-    const std::size_t second = (first + 1) % 3;
-    const double x = move.end[first] - move.start[first], y = move.end[second] - move.start[second];
-    const double away = normal(generator);
-    if (words.axis[first] == Machine::npos || words.axis[second] == Machine::npos) {
-      move.kind = MoveKind::straight;
-      return move;
-    }
-    move.arc_centre[first] = 0.5 * (move.start[first] + move.end[first]) - away * y;
-    move.arc_centre[second] = 0.5 * (move.start[second] + move.end[second]) + away * x;
-  }
-  return move;
-}
-
-/// Largest |actual - commanded| between the ends of a piece, both at the same share.
-void sample_piece(const test::ControlledMachine& control, const ProgramMove& move, const CorrectedNode& a,
-                  const CorrectedNode& b, double s0, double s1, double& point, double& direction) {
-  const MovePath path(move);
-  constexpr int kSamples = 12;
-  for (int j = 1; j < kSamples; ++j) {
-    const double t = static_cast<double>(j) / kSamples;
-    WordValues wanted;
-    path.at(s0 + (s1 - s0) * t, wanted);
-    const RigidTransform commanded = control.pose(move, wanted, false);
-    const RigidTransform actual = control.pose(move, test::between(a.corrected, b.corrected, t), true);
-    point = std::max(point, control.point_missed(actual, commanded));
-    direction = std::max(direction, control.direction_missed(actual, commanded));
-  }
-}
 
 TEST(MoveSplitting, NoSampleOfAnyPieceExceedsItsBound) {
   std::mt19937_64 generator(11);
@@ -99,7 +38,7 @@ TEST(MoveSplitting, NoSampleOfAnyPieceExceedsItsBound) {
       for (int n = 0; n < 40; ++n) {
         const ProgramCoordinates coordinates =
             n % 2 == 0 || !bounder.has_tool_centre() ? ProgramCoordinates::axes : ProgramCoordinates::tool_centre;
-        const ProgramMove move = random_move(machine, correction.kinematics(), coordinates, generator);
+        const ProgramMove move = test::random_move(machine, correction.kinematics(), coordinates, generator);
         const std::size_t tool = correction.tool(move.tool_length);
         const MovePath path(move);
         std::array<CorrectedNode, 2> nodes;
@@ -111,7 +50,7 @@ TEST(MoveSplitting, NoSampleOfAnyPieceExceedsItsBound) {
         const PieceBound bound =
             bound_pieces(bounder, machine.axes.size(), coordinates, correction.tool_point(tool), {&piece, 1});
         double point = 0, direction = 0;
-        sample_piece(control, move, nodes[0], nodes[1], 0, 1, point, direction);
+        test::sample_piece(control, move, nodes[0], nodes[1], 0, 1, point, direction);
         // Where the ends miss the direction, between them it is missed by no more than the greater of both, besides.
         const double ends = std::max(nodes[0].orientation_left, nodes[1].orientation_left);
         ASSERT_LE(point, bound.position + 2e-9) << "move " << n << " of set " << set;
@@ -149,8 +88,8 @@ TEST(MoveSplitting, PiecesOfSplitMovesStayWithinTheTolerance) {
     const bool turns = machine.axes.size() > 3;
     for (int n = 0; n < 12; ++n) {
       const ProgramMove move =
-          random_move(machine, correction.kinematics(),
-                      n % 2 == 0 ? ProgramCoordinates::axes : ProgramCoordinates::tool_centre, generator);
+          test::random_move(machine, correction.kinematics(),
+                            n % 2 == 0 ? ProgramCoordinates::axes : ProgramCoordinates::tool_centre, generator);
       const std::size_t tool = correction.tool(move.tool_length);
       std::array<CorrectedNode, 2> nodes;
       nodes[0].words = move.start;
@@ -165,8 +104,8 @@ TEST(MoveSplitting, PiecesOfSplitMovesStayWithinTheTolerance) {
       const std::size_t step = std::max<std::size_t>(1, ends.size() / 40);
       for (std::size_t k = 1; k < ends.size(); k += step) {
         double point = 0, direction = 0;
-        sample_piece(control, move, ends[k - 1], ends[k], splitter.shares()[k - 1], splitter.shares()[k], point,
-                     direction);
+        test::sample_piece(control, move, ends[k - 1], ends[k], splitter.shares()[k - 1], splitter.shares()[k], point,
+                           direction);
         EXPECT_LE(point, tolerance.position);
         if (turns) {
           const double left = std::max(ends[k - 1].orientation_left, ends[k].orientation_left);
@@ -248,7 +187,7 @@ TEST(MoveSplitting, BoundsHoldWithReversalValuesInAnyDirections) {
     const test::MachineWithPlay control(machine, {}, words);
     for (int n = 0; n < 40; ++n) {
       const ProgramMove move =
-          random_move(machine, correction.kinematics(), ProgramCoordinates::tool_centre, generator);
+          test::random_move(machine, correction.kinematics(), ProgramCoordinates::tool_centre, generator);
       const std::size_t tool = correction.tool(move.tool_length);
       const MovePath path(move);
       std::array<CorrectedNode, 2> nodes, commanded;

@@ -4,120 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/compensate/program/piece_majorant.h"
 #include "abbe/geometry/rotation.h"
-#include "abbe/geometry/singular_values.h"
 #include "abbe/machine/inverse_plan.h"
 
 namespace abbe {
 namespace {
 
-/// Bounds of a vector x(s) of the nominal chain and of its difference e(s) = actual - nominal. `bend` of the difference
-/// holds twice the sum of jumps besides, so that max|g''| / 8 + sum|jumps| / 4 is an eighth of it.
-struct Majorant {
-  double speed = 0, bend = 0;
-  double off = 0, off_speed = 0, off_bend = 0;
-
-  void add(double value, double rate, double second) {
-    off += value;
-    off_speed += rate;
-    off_bend += second;
-  }
-
-  /// (R - 1) v added, with bounds of R - 1 and its derivatives; v = nominal + difference.
-  void turn(double length, double value, double rate, double second) {
-    const double v = length + off, v_speed = speed + off_speed, v_bend = bend + off_bend;
-    add(value * v, rate * v + value * v_speed, second * v + 2 * rate * v_speed + value * v_bend);
-  }
-};
-
-/// E - 1 of an axis along s.
-struct ErrorAlong {
-  ErrorAlong(const AxisErrorBound& e, double speed, double bend)
-      : shift(e.shift),
-        shift_rate(e.shift_slope * speed),
-        shift_second(e.shift_bend * speed * speed + e.shift_slope * bend + 2 * e.shift_jumps * speed),
-        turn(e.turn),
-        turn_rate(e.turn_slope * speed),
-        turn_second(e.turn_bend * speed * speed + e.turn_slope * bend + 2 * e.turn_jumps * speed) {}
-  double shift, shift_rate, shift_second;
-  double turn, turn_rate, turn_second;
-};
-
-/// A rotary axis at q' about a displaced line instead of at q about its own.
-void rotate(Majorant& m, double length, double across, double speed, double actual_speed, double offset,
-            double offset_speed, double line_turn) {
-  // e <- Rot(q) e + [K Rot(q') K' - Rot(q)] (x + e)
-  const Majorant before = m;
-  m.off_speed += speed * before.off;
-  m.off_bend += 2 * speed * before.off_speed + speed * speed * before.off;
-  // Along the axis line Rot(q') - Rot(q) is zero: the lever is the distance from the line.
-  const double turn = std::min(offset, 2.0), turn_speed = offset_speed + turn * speed;
-  const double turn_bend = 2 * speed * offset_speed + offset_speed * offset_speed + turn * speed * speed;
-  const double v_speed = before.speed + before.off_speed, v_bend = before.bend + before.off_bend;
-  const double v = across + before.off;
-  m.add(turn * v, turn_speed * v + turn * v_speed, turn_bend * v + 2 * turn_speed * v_speed + turn * v_bend);
-  const double tilt = 2 * line_turn, w = length + before.off;
-  m.add(tilt * w, tilt * (actual_speed * w + v_speed),
-        tilt * (actual_speed * actual_speed * w + 2 * actual_speed * v_speed + v_bend));
-  m.bend = before.bend + 2 * speed * before.speed + speed * speed * across;
-  m.speed = before.speed + speed * across;
-}
-
 double square(double x) { return x * x; }
 
 }  // namespace
-
-PieceBounder::PieceBounder(const Machine& machine, const ErrorSet& errors, const std::array<std::size_t, 3>& point_axes)
-    : machine_(machine), tool_error_(errors.tool_offset_error.norm()), point_axes_(point_axes) {
-  std::sort(point_axes_.begin(), point_axes_.end());
-  const std::size_t n = machine.axes.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Axis& axis = machine.axes[i];
-    AxisModel model(machine, errors, i);
-    Eigen::Vector3d tilt = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
-    for (const LocationError& location : errors.locations) {
-      if (location.axis != i) continue;
-      const LocationEffect effect = location_effect(axis, location.component);
-      model.zero_position += location.value * effect.zero_position;
-      tilt += location.value * effect.tilt;
-      shift += location.value * effect.shift;
-    }
-    model.zero_position = std::abs(model.zero_position);
-    model.line_turn = tilt.lpNorm<1>();
-    model.line_shift = shift.norm();
-    axes_.push_back(std::move(model));
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    if (axes_[i].rotary || (i + 1 < n && !axes_[i + 1].rotary)) continue;
-    axes_[i].run_begins = true;
-    Eigen::MatrixXd directions(3, 0);
-    for (std::size_t k = i + 1; k-- > 0 && !axes_[k].rotary;) {
-      axes_[i].run.push_back(k);
-      directions.conservativeResize(3, directions.cols() + 1);
-      directions.rightCols(1) = machine.axes[k].direction;
-      axes_[i].bends = axes_[i].bends || is_point_axis(k);
-    }
-    // Gershgorin's bound of the largest singular value.
-    axes_[i].run_stretch = std::sqrt((directions.transpose() * directions).rowwise().lpNorm<1>().maxCoeff());
-  }
-  set_point_axes();
-}
-
-void PieceBounder::set_point_axes() {
-  Eigen::Matrix3d directions;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (point_axes_[i] >= axes_.size() || axes_[point_axes_[i]].rotary) return;
-    directions.col(static_cast<Eigen::Index>(i)) = machine_.axes[point_axes_[i]].direction;
-  }
-  for (std::size_t i = point_axes_[0]; i < point_axes_[2]; ++i) {
-    if (axes_[i].rotary) return;
-  }
-  if (std::abs(directions.determinant()) < 1e-6) return;
-  const Eigen::Matrix3d normal = directions.transpose() * directions;
-  // Gershgorin's bound of 1 / (smallest singular value).
-  point_condition_ = std::sqrt(normal.inverse().rowwise().lpNorm<1>().maxCoeff());
-  has_point_axes_ = true;
-}
 
 void PieceBounder::levers(const double* positions, const Eigen::Vector3d& tool, ChainLevers& result) const {
   Eigen::Vector3d x = machine_.tool_reference + tool;
@@ -223,6 +119,13 @@ struct PieceBounder::Passing {
   Majorant point, direction;
   double grown = 0;  ///< how far the point may be from that of the levers
   double lag = 0, lag_turn = 0;
+  std::array<BoundAlong, kMaxStates> factors{};  ///< of states
+  std::array<LineAlong, kMaxAxes> lines{};
+
+  LineBound line_of(std::size_t i) const {
+    const LineAlong& line = lines[i];
+    return {line.turn.value, line.turn.rate, line.turn.second + square(line.turn.rate), line.zero_position.second};
+  }
 
   // In tool centre programs the control itself follows the point: the chain is compared with the nominal one at the
   // same commands. The direction is compared with that of the commanded ones in all programs.
@@ -236,16 +139,56 @@ struct PieceBounder::Passing {
   }
 };
 
+PieceBounder::LineAlong PieceBounder::line_along(const AxisModel& axis, const Passing& at) const {
+  LineAlong along{{axis.line.turn}, {axis.line.shift}, {axis.line.zero_position}};
+  for (const StateErrors& errors : axis.with_state) {
+    const BoundAlong& factor = at.factors[errors.state];
+    along.turn.add(product_along(factor, {errors.line.turn}));
+    along.shift.add(product_along(factor, {errors.line.shift}));
+    along.zero_position.add(product_along(factor, {errors.line.zero_position}));
+  }
+  return along;
+}
+
+/// Error motions of an axis along the piece.
+/// @param length  of the point from that about which the angles act, mm
+ErrorAlong PieceBounder::error_along(std::size_t i, double bend, Passing& at, double length) const {
+  const AxisModel& axis = axes_[i];
+  const PieceMotion& motion = at.motion;
+  const double speed = motion.actual_speed[i];
+  const AxisErrorBound error = axis.errors.over(motion.lowest[i], motion.highest[i]);
+  ErrorAlong along(error, speed, bend);
+  if (play_.any) {
+    at.lag += play_.lag[i] * (error.shift_slope + error.turn_slope * length + (axis.rotary ? at.point.off : 0));
+    at.lag_turn += play_.lag[i] * error.turn_slope;
+  }
+  if (axis.with_state.empty()) return along;
+  BoundAlong shifts, angles;
+  for (const StateErrors& errors : axis.with_state) {
+    const AxisErrorBound unit = errors.motions.over(motion.lowest[i], motion.highest[i]);
+    const ErrorAlong one(unit, speed, bend);
+    const BoundAlong& factor = at.factors[errors.state];
+    shifts.add(product_along(factor, {one.shift, one.shift_rate, one.shift_second, play_.lag[i] * unit.shift_slope}));
+    angles.add(product_along(factor, {one.turn, one.turn_rate, one.turn_second, play_.lag[i] * unit.turn_slope}));
+  }
+  along.add_with_states(shifts, angles);
+  at.lag += shifts.lag + angles.lag * length;
+  at.lag_turn += angles.lag;
+  return along;
+}
+
 void PieceBounder::pass_rotary(std::size_t i, Passing& at) const {
   const AxisModel& axis = axes_[i];
   const PieceMotion& motion = at.motion;
-  const double actual_speed = motion.actual_speed[i];
-  const AxisErrorBound error = axis.errors.over(motion.lowest[i], motion.highest[i]);
-  const ErrorAlong e(error, actual_speed, 0);
+  const LineAlong& line = at.lines[i];
+  const LineBound bound = at.line_of(i);
+  const double zero_position = line.zero_position.value, zero_rate = line.zero_position.rate;
+  const double actual_speed = motion.actual_speed[i] + zero_rate;
   const double length = at.levers.from_point[i] + at.grown, across = at.levers.from_line[i] + at.grown;
+  const ErrorAlong e = error_along(i, 0, at, length);
   if (play_.any) {
-    at.lag += play_.lag[i] * (across + at.point.off + error.shift_slope + error.turn_slope * length);
-    at.lag_turn += play_.lag[i] * (1 + error.turn_slope);
+    at.lag += play_.lag[i] * across + line.zero_position.lag * across + 2 * line.turn.lag * length + 2 * line.shift.lag;
+    at.lag_turn += play_.lag[i] + line.zero_position.lag + 2 * line.turn.lag;
   }
   const double offset = motion.tool_centre ? play_.offset[i] : 0;
   // From the tool: Rot, then E; towards the workpiece: the inverse of E, shift first, then that of Rot.
@@ -253,11 +196,11 @@ void PieceBounder::pass_rotary(std::size_t i, Passing& at) const {
     at.point.add(e.shift, e.shift_rate, e.shift_second);
     at.turn_by_error(e, length);
   }
-  rotate(at.point, length, across, at.point_speed(i), actual_speed, at.point_offset(i) + axis.zero_position + offset,
-         at.point_offset_speed(i), axis.line_turn);
-  at.point.add(2 * axis.line_shift, axis.line_shift * actual_speed, axis.line_shift * square(actual_speed));
-  rotate(at.direction, 1, 1, motion.speed[i], actual_speed, motion.offset[i] + axis.zero_position,
-         motion.offset_speed[i], axis.line_turn);
+  rotate(at.point, length, across, at.point_speed(i), actual_speed, at.point_offset(i) + zero_position + offset,
+         at.point_offset_speed(i) + zero_rate, bound);
+  shift_line(at.point, line.shift, actual_speed, bound);
+  rotate(at.direction, 1, 1, motion.speed[i], actual_speed, motion.offset[i] + zero_position,
+         motion.offset_speed[i] + zero_rate, bound);
   if (axis.tool_side) {
     at.turn_by_error(e, length);
     at.point.add(e.shift, e.shift_rate, e.shift_second);
@@ -265,40 +208,60 @@ void PieceBounder::pass_rotary(std::size_t i, Passing& at) const {
   at.grown += motion.width[i] * across;
 }
 
+/// Axes with no rotary one between move the point as one vector.
+void PieceBounder::pass_run(const AxisModel& axis, Passing& at) const {
+  const PieceMotion& motion = at.motion;
+  double speeds = 0, widths = 0, offsets = 0, offset_speeds = 0, offset_seconds = 0, lags = 0;
+  for (const std::size_t k : axis.run) {
+    const BoundAlong& zero_position = at.lines[k].zero_position;
+    speeds += square(at.point_speed(k));
+    widths += square(motion.width[k]);
+    offsets += square(at.point_offset(k) + zero_position.value + (motion.tool_centre ? play_.offset[k] : 0));
+    lags += square(play_.lag[k] + zero_position.lag);
+    offset_speeds += square(at.point_offset_speed(k) + zero_position.rate);
+    offset_seconds += square(zero_position.second);
+  }
+  const double bend = axis.bends ? axis.run_stretch * at.bend : 0;
+  at.point.speed += axis.run_stretch * std::sqrt(speeds);
+  at.point.bend += bend;
+  at.lag += axis.run_stretch * std::sqrt(lags);
+  at.grown += axis.run_stretch * std::sqrt(widths);
+  at.point.add(axis.run_stretch * std::sqrt(offsets), axis.run_stretch * std::sqrt(offset_speeds),
+               (motion.tool_centre ? 0 : bend) + axis.run_stretch * std::sqrt(offset_seconds));
+}
+
 void PieceBounder::pass_linear(std::size_t i, Passing& at) const {
   const AxisModel& axis = axes_[i];
   const PieceMotion& motion = at.motion;
-  const double actual_speed = motion.actual_speed[i];
-  const double own_bend = motion.tool_centre && is_point_axis(i) ? at.bend : 0;
-  const AxisErrorBound error = axis.errors.over(motion.lowest[i], motion.highest[i]);
-  const ErrorAlong e(error, actual_speed, own_bend);
-  if (play_.any) {
-    at.lag += play_.lag[i] * (error.shift_slope + error.turn_slope * (at.levers.from_point[i] + at.grown));
-    at.lag_turn += play_.lag[i] * error.turn_slope;
-  }
+  const LineAlong& line = at.lines[i];
+  const LineBound bound = at.line_of(i);
+  const double actual_speed = motion.actual_speed[i] + line.zero_position.rate;
+  const double own_bend = own_bend_of(i, at);
+  const double length = at.levers.from_point[i] + at.grown;
+  const ErrorAlong e = error_along(i, own_bend, at, length);
   if (axis.tool_side) at.turn_by_error(e, at.levers.from_point[i] + at.grown);
-  if (axis.run_begins) {
-    // Axes with no rotary one between move the point as one vector.
-    double speeds = 0, widths = 0, offsets = 0, offset_speeds = 0, lags = 0;
-    for (const std::size_t k : axis.run) {
-      speeds += square(at.point_speed(k));
-      widths += square(motion.width[k]);
-      offsets += square(at.point_offset(k) + axes_[k].zero_position + (motion.tool_centre ? play_.offset[k] : 0));
-      lags += square(play_.lag[k]);
-      offset_speeds += square(at.point_offset_speed(k));
-    }
-    const double bend = axis.bends ? axis.run_stretch * at.bend : 0;
-    at.point.speed += axis.run_stretch * std::sqrt(speeds);
-    at.point.bend += bend;
-    at.lag += axis.run_stretch * std::sqrt(lags);
-    at.grown += axis.run_stretch * std::sqrt(widths);
-    at.point.add(axis.run_stretch * std::sqrt(offsets), axis.run_stretch * std::sqrt(offset_speeds),
-                 motion.tool_centre ? 0 : bend);
-  }
-  const double reach = std::max(std::abs(motion.lowest[i]), std::abs(motion.highest[i])) + axis.zero_position;
-  at.point.add(axis.line_turn * reach, axis.line_turn * actual_speed, axis.line_turn * own_bend);
+  if (axis.run_begins) pass_run(axis, at);
+  const double reach = std::max(std::abs(motion.lowest[i]), std::abs(motion.highest[i])) + line.zero_position.value;
+  at.point.add(bound.turn * reach, bound.turn * actual_speed, bound.turn * own_bend);
+  at.point.add(0, bound.turn_rate * reach,
+               bound.turn_second * reach + 2 * bound.turn_rate * actual_speed + bound.turn * bound.offset_second);
+  at.lag += line.turn.lag * reach;
   at.point.add(e.shift, e.shift_rate, e.shift_second);
   if (!axis.tool_side) at.turn_by_error(e, at.levers.from_point[i] + at.grown);
+}
+
+/// Of the commands of an axis as they are driven: lines, but for X, Y and Z in tool centre programs.
+double PieceBounder::own_bend_of(std::size_t i, const Passing& at) const {
+  return at.motion.tool_centre && is_point_axis(i) ? at.bend : 0;
+}
+
+void PieceBounder::set_states(Passing& at) const {
+  if (factors_.any()) {
+    CommandsAlong commands{at.motion.lowest, at.motion.highest, at.motion.actual_speed, {}, play_.lag};
+    for (std::size_t i = 0; i < axes_.size(); ++i) commands.bend[i] = own_bend_of(i, at);
+    factors_.along(commands, at.factors);
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) at.lines[i] = line_along(axes_[i], at);
 }
 
 PieceBound PieceBounder::bound(const ChainLevers& levers, PieceMotion& motion) const {
@@ -308,6 +271,7 @@ PieceBound PieceBounder::bound(const ChainLevers& levers, PieceMotion& motion) c
   const std::size_t stage_end = motion.tool_centre && has_point_axes_ ? point_axes_[0] + 1 : 0;
   const double bend = stage_end > 0 ? move_point_axes(levers, motion, stages) : motion.arc_bend;
   Passing at{levers, motion, bend, {}, {}};
+  set_states(at);
   at.point.off = tool_error_;
   for (std::size_t i = axes_.size(); i-- > 0;) {
     if (axes_[i].rotary) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/errors/random_stream.h"
 
 namespace abbe {
@@ -32,6 +33,16 @@ double longest_lever(const Machine& machine, const PieceBounder& bounder, std::s
   return longest;
 }
 
+/// Axes on whose side of approach errors depend: 1 or 0, [axes].
+std::vector<std::uint8_t> axes_with_sides(const Machine& machine, const ErrorSet& errors) {
+  std::vector<std::uint8_t> axes(machine.axes.size(), 0);
+  const std::vector<std::uint8_t> used = used_states(machine, errors);
+  for (std::size_t j = 0; j < used.size(); ++j) {
+    if (used[j] != 0 && machine.states[j].kind == StateKind::approach) axes[machine.states[j].axis] = 1;
+  }
+  return axes;
+}
+
 }  // namespace
 
 void ProgramWay::clear() {
@@ -44,16 +55,23 @@ void ProgramWay::clear() {
 ProgramReversals::ProgramReversals(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
                                    const PieceBounder& bounder, double dead_band, double dead_band_turn)
     : directions_(std::vector<double>{}), dead_band_(dead_band), dead_band_turn_(dead_band_turn) {
+  std::vector<std::uint8_t> with_sides = axes_with_sides(machine, errors);
+  const bool sides = std::any_of(with_sides.begin(), with_sides.end(), [](std::uint8_t axis) { return axis != 0; });
   std::vector<double> dead_bands;
-  for (std::size_t i = 0; i < machine.axes.size() && !errors.reversals.empty(); ++i) {
+  const auto add = [&](std::size_t axis, double value) {
+    axes_.push_back({axis, value, dead_band_of(axis, 0)});
+    dead_bands.push_back(axes_.back().dead_band);
+    with_sides[axis] = 0;
+  };
+  for (std::size_t i = 0; i < machine.axes.size() && (sides || !errors.reversals.empty()); ++i) {
     rotary_.push_back(machine.axes[i].kind == AxisKind::rotary);
     lever_.push_back(rotary_.back() ? longest_lever(machine, bounder, i) : 1.0);
   }
   for (const Reversal& reversal : errors.reversals) {
-    if (reversal.value == 0 || !words.moves(reversal.axis)) continue;
-    const double band = dead_band_of(reversal.axis, 0);
-    axes_.push_back({reversal.axis, reversal.value, band});
-    dead_bands.push_back(band);
+    if (reversal.value != 0 && words.moves(reversal.axis)) add(reversal.axis, reversal.value);
+  }
+  for (std::size_t i = 0; i < with_sides.size(); ++i) {
+    if (with_sides[i] != 0 && words.moves(i)) add(i, 0);
   }
   directions_ = AxisDirections(dead_bands);
   stood_.assign(axes_.size(), 0.0);
@@ -121,7 +139,15 @@ CorrectedNode ProgramReversals::commanded(const NodeCorrection& correction, cons
                                           const CorrectedNode& node, const AxisApproach& approach) const {
   std::array<double, kMaxAxes> added{};
   for (const ReversalAxis& axis : axes_) added[axis.axis] = axis.offset(approach[axis.axis]);
-  return correction.offset(move.coordinates, tool, node, added);
+  if (!correction.has_approaches()) return correction.offset(move.coordinates, tool, node, added);
+  return correction.offset(move.coordinates, tool, correction.after(move.coordinates, tool, node, approach), added);
+}
+
+bool ProgramReversals::only_turns(const CorrectedNode& from, const CorrectedNode& to) const {
+  for (std::size_t i = 0; i < rotary_.size(); ++i) {
+    if (!rotary_[i] && std::abs(to.corrected_position[i] - from.corrected_position[i]) > kNoMotion_mm) return false;
+  }
+  return true;
 }
 
 void ProgramReversals::steps(const NodeCorrection& correction, const ProgramMove& move, std::size_t tool,
@@ -132,12 +158,22 @@ void ProgramReversals::steps(const NodeCorrection& correction, const ProgramMove
     AxisApproach taken = way.approach[k - 1];
     for (const ReversalAxis& axis : axes_) {
       if (approach[axis.axis] == taken[axis.axis]) continue;
-      const double way_there =
-          lever_[axis.axis] * std::abs(axis.offset(approach[axis.axis]) - axis.offset(taken[axis.axis]));
+      double way_there = lever_[axis.axis] * std::abs(axis.offset(approach[axis.axis]) - axis.offset(taken[axis.axis]));
+      bool rotary = rotary_[axis.axis];
+      CorrectedNode before;
+      if (correction.has_approaches()) before = commanded(correction, move, tool, way.nodes[k - 1], taken);
       taken[axis.axis] = approach[axis.axis];
-      steps.push_back({commanded(correction, move, tool, way.nodes[k - 1], taken), axis.axis, way_there, k, taken});
+      const CorrectedNode after = commanded(correction, move, tool, way.nodes[k - 1], taken);
+      if (correction.has_approaches()) {
+        // Other axes may move as well, or none at all.
+        if (after.corrected == before.corrected) continue;
+        way_there = moved(before, after);
+        rotary = only_turns(before, after);
+      }
+      steps.push_back({after, axis.axis, rotary, way_there, k, taken});
     }
-    steps.push_back({commanded(correction, move, tool, way.nodes[k], approach), ProgramStep::npos, 0, k, approach});
+    steps.push_back(
+        {commanded(correction, move, tool, way.nodes[k], approach), ProgramStep::npos, false, 0, k, approach});
   }
 }
 

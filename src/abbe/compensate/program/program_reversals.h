@@ -31,13 +31,15 @@ struct ProgramStep {
 
   CorrectedNode node;
   std::size_t taken_up = npos;  ///< axis
+  bool rotary = false;          ///< taken up: only rotary axes move
   /// Of the functional point by that axis, mm; of rotary axes at the longest lever of the machine's tool.
   double way = 0;
   std::size_t to = 0;  ///< ProgramWay::nodes; of a take-up the end of the piece that follows
   AxisApproach approach{};
 };
 
-/// Directions of the axes with reversal values along a program and what their commands get for it.
+/// Directions of the axes with reversal values along a program and what their commands get for it. Axes on whose side
+/// of approach errors depend are followed as well: nodes are corrected for the errors after their approaches.
 ///
 /// Directions are those of the corrected axis positions (of what the axes are driven to), with a dead band
 /// (AxisDirections). Between nodes axes do not turn round but by less than it. Where an axis takes another direction, a
@@ -74,6 +76,8 @@ class ProgramReversals {
   /// @param tool_length  mm, of the vector by which the tool is longer than the machine's
   double dead_band_of(std::size_t axis, double tool_length) const;
   void take_tool(const std::array<double, 3>& length);
+
+  bool only_turns(const CorrectedNode& from, const CorrectedNode& to) const;
 
   std::vector<ReversalAxis> axes_;
   AxisDirections directions_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "abbe/errors/error_states.h"
+
 namespace abbe {
 
 NodeCorrection::NodeCorrection(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
@@ -15,6 +17,10 @@ NodeCorrection::NodeCorrection(const Machine& machine, const ErrorSet& errors, c
       nominal_(machine, ErrorSet{}, Body::tool, Body::workpiece) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     if (!words.moves(i)) held_.push_back(i);
+  }
+  const std::vector<std::uint8_t> used = used_states(machine, errors);
+  for (std::size_t j = 0; j < used.size(); ++j) {
+    if (used[j] != 0 && machine.states[j].kind == StateKind::approach) approaches_.push_back(j);
   }
   problem_ = CompensatedInverse(machine, errors, options, held_).problem();
 }
@@ -31,14 +37,23 @@ std::size_t NodeCorrection::tool(const std::array<double, 3>& length) {
   return tools_.size() - 1;
 }
 
-void NodeCorrection::correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes) const {
+void NodeCorrection::correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes,
+                             const AxisApproach& approach) const {
   for (std::size_t first = 0; first < nodes.size(); first += ChainPlan::kBlockSize) {
     const std::size_t count = std::min(ChainPlan::kBlockSize, nodes.size() - first);
-    correct_block(coordinates, tools_[tool], nodes.subspan(first, count));
+    correct_block(coordinates, tools_[tool], approach, nodes.subspan(first, count));
   }
 }
 
-void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& tool,
+CorrectedNode NodeCorrection::after(ProgramCoordinates coordinates, std::size_t tool, const CorrectedNode& node,
+                                    const AxisApproach& approach) const {
+  CorrectedNode result;
+  result.words = node.words;
+  correct_block(coordinates, tools_[tool], approach, {&result, 1});
+  return result;
+}
+
+void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& tool, const AxisApproach& approach,
                                    std::span<CorrectedNode> nodes) const {
   using NodeLanes = std::array<double, ChainPlan::kBlockSize>;
   const std::size_t n = machine_.axes.size(), count = nodes.size();
@@ -56,7 +71,14 @@ void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& t
     kinematics_.axes(coordinates, tool.point, node.words, node.position.data());
     for (std::size_t i = 0; i < n; ++i) in[i][k] = node.position[i];
   }
-  tool.inverse->correct({{commands.data(), n}, count},
+  std::array<NodeLanes, kMaxStates> sides;
+  std::array<const double*, kMaxStates> states{};
+  for (const std::size_t j : approaches_) {
+    std::fill_n(sides[j].begin(), count, static_cast<double>(approach[machine_.states[j].axis]));
+    states[j] = sides[j].data();
+  }
+  const std::size_t given = approaches_.empty() ? 0 : machine_.states.size();
+  tool.inverse->correct({{commands.data(), n}, count, {states.data(), given}},
                         {{corrected.data(), n}, status.data(), point_left.data(), orientation.data()});
 
   std::array<NodeLanes, 3> start, before, after;

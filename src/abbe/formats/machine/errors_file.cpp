@@ -42,12 +42,14 @@ void read_name(TomlTable& table, const Machine& machine, bool location, std::siz
   }
 }
 
-/// Whether a pose needs nothing but its commands for this state.
-bool follows_from_commands(const Machine& machine, std::size_t state) {
+/// Whether a job that knows the commands of a pose, or motions that lead to it, needs nothing else for this state.
+bool is_usable(const Machine& machine, std::size_t state, UsableStates usable) {
+  if (usable == UsableStates::none) return false;
   const MachineState& one = machine.states[state];
   if (one.kind == StateKind::product) {
-    return follows_from_commands(machine, one.first) && follows_from_commands(machine, one.second);
+    return is_usable(machine, one.first, usable) && is_usable(machine, one.second, usable);
   }
+  if (one.kind == StateKind::approach) return usable == UsableStates::of_motions;
   return one.kind == StateKind::axis || one.kind == StateKind::gravity;
 }
 
@@ -348,7 +350,7 @@ ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine
 
 void refuse_states(const Machine& machine, const ErrorSet& errors, const std::string& job, UsableStates usable) {
   const auto refuse = [&](std::size_t state, const std::string& error) {
-    if (state == kNoState || (usable == UsableStates::of_commands && follows_from_commands(machine, state))) return;
+    if (state == kNoState || is_usable(machine, state, usable)) return;
     throw InputError({.field = error},
                      usable == UsableStates::none
                          ? "depends on a state, which " + job + " does not take into account"

@@ -31,16 +31,6 @@ std::vector<std::string> given_columns(const Machine& machine) {
   return columns;
 }
 
-/// Says where a value lies beyond those at which the errors were measured.
-void note_outside(ErrorsFile& file, const std::string& column, double value) {
-  for (const CoveredState& covered : file.covered) {
-    if (covered.column != column || (value >= covered.from && value <= covered.to)) continue;
-    file.at_state.outside.push_back(
-        fmt::format("{} = {} lies outside the {} to {} that the readings cover: the errors are extrapolated", column,
-                    shortest_text(value), shortest_text(covered.from), shortest_text(covered.to)));
-  }
-}
-
 /// Option `days_since_measurement=30`, taken out of the others; nothing where it is not given.
 std::optional<double> take_age(const std::string& option, std::vector<std::string>& texts) {
   std::optional<double> days;
@@ -59,6 +49,21 @@ std::optional<double> take_age(const std::string& option, std::vector<std::strin
     texts.erase(texts.begin() + static_cast<std::ptrdiff_t>(i));
   }
   return days;
+}
+
+/// Values of states and the age among texts of an option; the errors become as old as that says.
+std::vector<double> values_and_age(const Machine& machine, const std::string& option, std::vector<std::string> states,
+                                   const std::string& path, ErrorsFile& file) {
+  const std::optional<double> days = take_age(option, states);
+  std::vector<double> values = state_options(machine, option, states);
+  if (!days || is_truth(file)) return values;  // the truth is what it is
+  if (!file.ageing.any()) {
+    throw InputError({.file = path, .field = "ageing"}, "it is not said how these errors wander with time",
+                     "a table [ageing] with um_per_sqrt_day and urad_per_sqrt_day");
+  }
+  add_ageing(machine, *days, file);
+  file.at_state.emplace_back(std::string(kAgeOption), *days);
+  return values;
 }
 
 /// What is wrong with the name of a state.
@@ -150,6 +155,23 @@ std::vector<std::optional<std::pair<double, double>>> state_range_options(const 
   return ranges;
 }
 
+std::vector<std::string> values_outside_covered(const Machine& machine, const ErrorsFile& file,
+                                                std::span<const double> values) {
+  std::vector<std::string> sentences;
+  const std::vector<std::uint8_t> used = used_states(machine, file.errors);
+  for (std::size_t j = 0; j < std::min(values.size(), used.size()); ++j) {
+    if (used[j] == 0 || !std::isfinite(values[j])) continue;
+    const std::string column = state_column(machine.states[j]);
+    for (const CoveredState& covered : file.covered) {
+      if (covered.column != column || (values[j] >= covered.from && values[j] <= covered.to)) continue;
+      sentences.push_back(
+          fmt::format("{} = {} lies outside the {} to {} that the readings cover: the errors are extrapolated", column,
+                      shortest_text(values[j]), shortest_text(covered.from), shortest_text(covered.to)));
+    }
+  }
+  return sentences;
+}
+
 std::vector<std::string> states_outside_covered(const Machine& machine, const ErrorsFile& file, const PoseList& poses) {
   std::vector<std::string> sentences;
   const std::vector<std::uint8_t> used = used_states(machine, file.errors);
@@ -183,13 +205,14 @@ std::vector<std::string> states_outside_covered(const Machine& machine, const Er
 ErrorsFile at_given_states(const Machine& machine, ErrorsFile file, std::span<const double> values,
                            const std::string& path) {
   const std::vector<std::uint8_t> used = used_states(machine, file.errors);
+  for (std::string& sentence : values_outside_covered(machine, file, values))
+    file.at_state.outside.push_back(std::move(sentence));
   std::string missing_names, missing_options;
   for (std::size_t j = 0; j < used.size(); ++j) {
     const MachineState& state = machine.states[j];
     if (used[j] == 0 || !is_input(state.kind)) continue;
     if (j < values.size() && std::isfinite(values[j])) {
       file.at_state.emplace_back(state_column(state), values[j]);
-      note_outside(file, state_column(state), values[j]);
       continue;
     }
     missing_names += (missing_names.empty() ? "" : ", ") + state.name;
@@ -236,21 +259,33 @@ void add_ageing(const Machine& machine, double days, ErrorsFile& file) {
   for (Reversal& reversal : file.errors.reversals) wander(true, &reversal.standard_uncertainty);
 }
 
-ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
-                          const std::vector<std::string>& states) {
-  std::vector<std::string> of_machine = states;
-  const std::optional<double> days = take_age("--state", of_machine);
-  const std::vector<double> values = state_options(machine, "--state", of_machine);
+ErrorsFile read_errors_and_values(const std::filesystem::path& path, const Machine& machine,
+                                  const std::vector<std::string>& states, std::vector<double>& values) {
   ErrorsFile file = read_errors(path, machine, StatesOfErrors::allowed);
-  const bool ages = days && !is_truth(file);  // the truth is what it is
-  if (ages && !file.ageing.any()) {
-    throw InputError({.file = path.string(), .field = "ageing"}, "it is not said how these errors wander with time",
-                     "a table [ageing] with um_per_sqrt_day and urad_per_sqrt_day");
-  }
-  if (ages) add_ageing(machine, *days, file);
-  file = at_given_states(machine, std::move(file), values, path.string());
-  if (ages) file.at_state.emplace_back(std::string(kAgeOption), *days);
+  values = values_and_age(machine, "--state", states, path.string(), file);
   return file;
+}
+
+ErrorsFile errors_at_options(const Machine& machine, ErrorsFile file, const std::string& option,
+                             const std::vector<std::string>& states, const std::string& path,
+                             StatesOfErrors not_given) {
+  StateValues before = std::exchange(file.at_state, {});
+  const std::vector<double> values = values_and_age(machine, option, states, path, file);
+  const StateValues age = std::exchange(file.at_state, std::move(before));
+  const bool any = std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  if (any || not_given == StatesOfErrors::refused) file = at_given_states(machine, std::move(file), values, path);
+  file.at_state.insert(file.at_state.end(), age.begin(), age.end());
+  return file;
+}
+
+ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
+                          const std::vector<std::string>& states, StatesOfErrors not_given) {
+  // Options first: what is wrong with them needs no file.
+  std::vector<std::string> of_machine = states;
+  take_age("--state", of_machine);
+  state_options(machine, "--state", of_machine);
+  ErrorsFile file = read_errors(path, machine, StatesOfErrors::allowed);
+  return errors_at_options(machine, std::move(file), "--state", states, path.string(), not_given);
 }
 
 std::string state_words(const StateValues& values) {

@@ -64,13 +64,15 @@ std::string reversals_text(const Machine& machine, const CorrectedProgram& resul
     const ReversalAxis& axis = result.reversals[r];
     const StatusCount& taken_up = result.report.take_ups[axis.axis];
     const StatusCount& unknown = result.report.direction_unknown[axis.axis];
-    text +=
-        fmt::format("reversal of {} {}", machine.axes[axis.axis].name, reversal_size(machine, axis.axis, axis.value));
+    const std::string& name = machine.axes[axis.axis].name;
+    text += axis.value == 0 ? "side of approach of " + name
+                            : fmt::format("reversal of {} {}", name, reversal_size(machine, axis.axis, axis.value));
     if (result.reversal_uncertainty[r] > 0) {
       text +=
           fmt::format(", standard uncertainty {}", reversal_size(machine, axis.axis, result.reversal_uncertainty[r]));
     }
-    text += fmt::format(": taken up {} time{}", taken_up.count, taken_up.count == 1 ? "" : "s");
+    text += fmt::format(": {} {} time{}", axis.value == 0 ? "changed" : "taken up", taken_up.count,
+                        taken_up.count == 1 ? "" : "s");
     if (taken_up.count > 0) text += fmt::format(", {}", lines_text(taken_up));
     // Longer tools make it smaller for rotary axes.
     const bool rotary = machine.axes[axis.axis].kind == AxisKind::rotary;
