@@ -17,6 +17,7 @@
 #include "abbe/study/chosen_terms.h"
 #include "abbe/study/model.h"
 #include "abbe/study/not_identified.h"
+#include "abbe/study/ranked_sensors.h"
 #include "abbe/study/unseen.h"
 #include "abbe/verify/error_map.h"
 #include "abbe/verify/left_out_poses.h"
@@ -65,6 +66,7 @@ struct StudyResult {
   std::vector<Distrust> distrusted;     ///< why a usable result must not be used as it is, see judge_trust()
   bool misfit_accepted = false;         ///< the user wants to use it nevertheless
   std::optional<EarlierResult> before;  ///< where the study names one
+  std::optional<RankedSensors> sensors;  ///< where the study wants them ranked
 
   /// True if the result may be used: converged and nothing impossible.
   bool usable() const { return identification.status == IdentifyStatus::converged; }

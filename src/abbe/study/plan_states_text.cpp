@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "abbe/machine/state.h"
 
@@ -52,15 +53,6 @@ std::vector<std::size_t> conditions_in_turn(const StudyPlan& result) {
   return order;
 }
 
-std::string likeness_words(const SensorSelection& sensors, const SensorLikeness& one) {
-  const std::string& name = sensors.courses[one.sensor];
-  if (one.still()) return fmt::format("{} does not change: what depends on it is not told apart from the rest", name);
-  const std::string other =
-      one.other == SensorLikeness::kAllOthers ? "the others together" : sensors.courses[one.other];
-  return fmt::format("{} follows from {}: {:.3g} of its deviation of {:.3g} (root mean square) remain", name, other,
-                     one.left, one.whole);
-}
-
 std::string enough_sensor_words(const SensorSelection& sensors) {
   if (sensors.enough == 0) return "none is needed";
   std::string names;
@@ -82,7 +74,7 @@ std::string sensors_text(const SensorSelection& sensors) {
                         sensors.names[sensors.forward[k].sensor]);
   }
   text += "  " + enough_sensor_words(sensors) + "\n";
-  for (const SensorLikeness& one : sensors.likely) text += "  note: " + likeness_words(sensors, one) + "\n";
+  for (const SensorLikeness& one : sensors.likely) text += "  note: " + likeness_words(sensors.courses, one) + "\n";
   return text;
 }
 
@@ -97,17 +89,7 @@ nlohmann::ordered_json sensors_json(const SensorSelection& sensors) {
     json["added_in_turn"].push_back({{"sensor", sensors.names[step.sensor]}, {"error_um", 1e3 * step.error}});
   }
   json["enough"] = sensors.enough;
-  for (const SensorLikeness& one : sensors.likely) {
-    nlohmann::ordered_json entry = {{"state", sensors.courses[one.sensor]}};
-    if (one.still()) {
-      entry["does_not_change"] = true;
-    } else {
-      entry["follows_from"] = one.other == SensorLikeness::kAllOthers ? "others" : sensors.courses[one.other];
-      entry["deviation"] = one.whole;
-      entry["remains"] = one.left;
-    }
-    json["alike"].push_back(entry);
-  }
+  for (const SensorLikeness& one : sensors.likely) json["alike"].push_back(likeness_json(sensors.courses, one));
   return json;
 }
 
@@ -115,6 +97,80 @@ nlohmann::ordered_json states_json(const Study& study, const std::vector<double>
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (std::size_t j = 0; j < states.size(); ++j) {
     if (!std::isnan(states[j])) json[state_column(study.machine.states[j])] = states[j];
+  }
+  return json;
+}
+
+std::string plain_words(const StudyPlan& result, const PlainStates& plain) {
+  const std::string where = conditions_list(result, plain.conditions);
+  if (plain.kind == PlainStates::Kind::ends) return "a grid at the lowest and highest states (" + where + ")";
+  return (result.states.has_course() ? "a grid at one time, from " : "a grid at one state, ") + where;
+}
+
+/// By how much the plan is better; none where one of the two leaves something open.
+std::optional<double> gain_over(const StudyPlan& result, const PlainStates& plain) {
+  if (!plain.grids.determined || leaves_states_open(result)) return std::nullopt;
+  return plain.grids.determined->value.uncertainty / result.uncertainty;
+}
+
+std::string plain_states_text(const StudyPlan& result) {
+  if (result.plain_states.empty()) return "";
+  std::string text = "\nagainst as many readings at plain states\n";
+  for (const PlainStates& plain : result.plain_states) {
+    text += "  " + plain_words(result, plain) + "\n";
+    if (const auto gain = gain_over(result, plain)) {
+      text += fmt::format("    {:.3f} um with {} readings ({}): the plan's is {:.2f} times smaller\n",
+                          1e3 * plain.grids.determined->value.uncertainty, plain.grids.determined->value.readings,
+                          plain.grids.determined->words, *gain);
+    } else {
+      text += fmt::format("    none of {} grids determines everything that the plan does\n", plain.grids.tried);
+    }
+    if (!plain.grids.any) continue;
+    const GridPoint& any = *plain.grids.any;
+    text += fmt::format(
+        "    with prior knowledge in both {:.3f} um ({}): the plan's {:.3f} um is {:.2f} times smaller\n",
+        1e3 * any.value.with_prior, any.words, 1e3 * result.with_prior, any.value.with_prior / result.with_prior);
+    if (any.open > 0)
+      text += fmt::format("    by itself it leaves {} directions open, most of all in {}\n", any.open, any.open_words);
+  }
+  return text;
+}
+
+nlohmann::json plain_states_table(const StudyPlan& result) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const PlainStates& plain : result.plain_states) {
+    const auto gain = gain_over(result, plain);
+    const std::string with_prior =
+        plain.grids.any ? fmt::format("{:.3f}", 1e3 * plain.grids.any->value.with_prior) : "";
+    rows.push_back(
+        {plain_words(result, plain),
+         plain.grids.determined ? fmt::format("{:.3f}", 1e3 * plain.grids.determined->value.uncertainty) : "open",
+         gain ? fmt::format("{:.2f}", *gain) : "", with_prior,
+         plain.grids.any ? fmt::format("{:.2f}", plain.grids.any->value.with_prior / result.with_prior) : ""});
+  }
+  return {{"title", "Against as many readings at plain states"},
+          {"columns",
+           {"readings", "uncertainty / \xC2\xB5m", "over the plan's", "with prior / \xC2\xB5m", "over the plan's"}},
+          {"rows", rows}};
+}
+
+nlohmann::ordered_json plain_json(const Study& study, const StudyPlan& result, const PlainStates& plain) {
+  nlohmann::ordered_json json;
+  json["kind"] = plain.kind == PlainStates::Kind::ends ? "lowest_and_highest" : "one";
+  for (const std::size_t condition : plain.conditions) {
+    json["at"].push_back(states_json(study, result.states.conditions()[condition].states));
+  }
+  json["grids_tried"] = plain.grids.tried;
+  json["determined"] = plain.grids.determined.has_value();
+  if (plain.grids.determined) {
+    json["uncertainty_um"] = 1e3 * plain.grids.determined->value.uncertainty;
+    json["readings"] = plain.grids.determined->value.readings;
+  }
+  if (const auto gain = gain_over(result, plain)) json["gain"] = *gain;
+  if (plain.grids.any) {
+    json["uncertainty_with_prior_um"] = 1e3 * plain.grids.any->value.with_prior;
+    json["open_directions"] = plain.grids.any->open;
+    json["gain_with_prior"] = plain.grids.any->value.with_prior / result.with_prior;
   }
   return json;
 }
@@ -165,6 +221,7 @@ std::string planned_states_text(const Study& study, const StudyPlan& result) {
                         result.states.has_course() ? fmt::format("{:.2f} h, ", at.time_s / kHour_s) : "",
                         result.states.words(at.states));
   }
+  text += plain_states_text(result);
   if (!result.sensors.names.empty()) text += sensors_text(result.sensors);
   for (const std::string& note : result.states.notes()) text += "note: " + note + "\n";
   return text;
@@ -201,6 +258,7 @@ void add_planned_states(const Study& study, const StudyPlan& result, nlohmann::o
     states["uncertainty_over_states"].push_back(entry);
   }
   states["determined"] = !leaves_states_open(result);
+  for (const PlainStates& plain : result.plain_states) states["against"].push_back(plain_json(study, result, plain));
   if (!result.sensors.names.empty()) states["sensors"] = sensors_json(result.sensors);
   if (!result.states.notes().empty()) states["notes"] = result.states.notes();
   json["states"] = states;
@@ -233,6 +291,7 @@ nlohmann::json planned_states_tables(const StudyPlan& result) {
   tables.push_back({{"title", "Uncertainty where the errors are used"},
                     {"columns", {"time / h", "states", "uncertainty / \xC2\xB5m"}},
                     {"rows", rows}});
+  if (!result.plain_states.empty()) tables.push_back(plain_states_table(result));
   if (result.sensors.names.empty()) return tables;
   rows = nlohmann::json::array();
   for (const SensorStep& step : result.sensors.without) {
@@ -245,7 +304,8 @@ nlohmann::json planned_states_tables(const StudyPlan& result) {
   std::string note =
       fmt::format("With all sensors {:.3f} \xC2\xB5m remain, without any {:.3f} \xC2\xB5m. {}.",
                   1e3 * result.sensors.all, 1e3 * result.sensors.none, enough_sensor_words(result.sensors));
-  for (const SensorLikeness& one : result.sensors.likely) note += " " + likeness_words(result.sensors, one) + ".";
+  for (const SensorLikeness& one : result.sensors.likely)
+    note += " " + likeness_words(result.sensors.courses, one) + ".";
   tables.push_back(
       {{"title", "Which sensors matter"},
        {"columns", {"sensor", "without it / \xC2\xB5m", "added as number", "with those added / \xC2\xB5m"}},
