@@ -46,7 +46,7 @@ components = ["x", "z", "rz"]
 degree = 2
 random_walk_um_per_sqrt_h = 6
 random_walk_urad_per_sqrt_h = 2
-knots = 200
+knots = 12
 )";
 
 struct DriftCase {
@@ -129,6 +129,7 @@ TEST(PlanBesideDrift, HasTheInformationOfADenseModelWithCorrelatedNoise) {
   const std::filesystem::path folder = test::empty_folder("plan_drift_dense");
   DriftCase one;
   one.drift = "[setup.drift]\ncomponents = [\"x\", \"z\"]\ndegree = 2\nrandom_walk_um_per_sqrt_h = 6\nknots = 200\n";
+  one.plan = "[plan]\nposes = 100\nreadings = 36\nsettle_s = 20\nreading_s = 5\n";
   const Study study = drift_case(folder, one);
   const StudyPlan plan = plan_study(study);
   ASSERT_EQ(plan.plan.status, PlanningStatus::done);
@@ -272,7 +273,7 @@ TEST(PlanBesideDrift, SimulatedCampaignsScatterAsPredicted) {
   const PlanningSpace space(setting.candidates.rows, wide.known());
   const auto predicted = point_as_taken(wide, space, rows, plan.readings);
   ASSERT_TRUE(predicted);
-  constexpr int kCampaigns = 60;
+  constexpr int kCampaigns = 40;
   double squares = 0, of_squares = 0;
   for (int draw = 0; draw < kCampaigns; ++draw) {
     study.seed = 500 + static_cast<std::uint64_t>(draw);
