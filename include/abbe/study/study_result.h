@@ -61,11 +61,11 @@ struct StudyResult {
   std::optional<VolumetricFigures> volumetric;  ///< over the grid of all commands; usable results only
   std::optional<StudyMap> map;
   std::vector<std::string> warnings;
-  std::vector<Advice> advice;           ///< what the readings do not see, and what would show it
-  NotIdentified not_identified;         ///< errors of the machine that are not in the model; empty unless usable
-  std::vector<Distrust> distrusted;     ///< why a usable result must not be used as it is, see judge_trust()
-  bool misfit_accepted = false;         ///< the user wants to use it nevertheless
-  std::optional<EarlierResult> before;  ///< where the study names one
+  std::vector<Advice> advice;            ///< what the readings do not see, and what would show it
+  NotIdentified not_identified;          ///< errors of the machine that are not in the model; empty unless usable
+  std::vector<Distrust> distrusted;      ///< why a usable result must not be used as it is, see judge_trust()
+  bool misfit_accepted = false;          ///< the user wants to use it nevertheless
+  std::optional<EarlierResult> before;   ///< where the study names one
   std::optional<RankedSensors> sensors;  ///< where the study wants them ranked
 
   /// True if the result may be used: converged and nothing impossible.

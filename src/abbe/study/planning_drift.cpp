@@ -19,7 +19,7 @@ namespace {
 using Eigen::Index;
 
 constexpr std::size_t kReadingsOfPart = 6;  // at least
-constexpr std::size_t kMostParts = 12;
+constexpr std::size_t kMostPartsInTime = 12;
 constexpr int kTimedRounds = 4;
 constexpr std::size_t kPosesOfPart = 40;  // at least
 constexpr double kUndetermined = std::numeric_limits<double>::infinity();
@@ -177,7 +177,7 @@ PlanningCandidates rows_as_taken(const PlanningModel& model, const std::vector<C
 std::vector<PlanningPart> parts_in_order(const Study& study, const PlannedStates& states,
                                          std::vector<CandidateReading>& readings) {
   const std::vector<double> times = reading_times(study, readings, states);
-  const std::size_t wanted = std::clamp<std::size_t>(readings.size() / kReadingsOfPart, 1, kMostParts);
+  const std::size_t wanted = std::clamp<std::size_t>(readings.size() / kReadingsOfPart, 1, kMostPartsInTime);
   const bool together = sees_points_only(study);
   std::vector<PlanningPart> parts;
   for (std::size_t begin = 0, end = 0; begin < readings.size(); begin = end) {

@@ -197,14 +197,16 @@ TEST(PlanOverStates, TakesTheStatesThatTellTheErrorsApart) {
   ASSERT_EQ(plan.plain_states.size(), 2U);
   const PlainStates &ends = plan.plain_states[0], &single = plan.plain_states[1];
   EXPECT_EQ(ends.conditions, (std::vector<std::size_t>{0, 5}));
-  // Hall and motor change together between these, so that nothing tells what each of them does.
-  EXPECT_FALSE(ends.grids.determined);
-  ASSERT_TRUE(ends.grids.any && single.grids.any);
-  EXPECT_GT(ends.grids.any->open, 0U);
+  // Hall and motor act on different errors, so that the ends tell both, though not as well.
+  ASSERT_TRUE(ends.grids.determined && ends.grids.any && single.grids.any);
+  EXPECT_GT(ends.grids.determined->value.uncertainty, plan.uncertainty);
+  EXPECT_FALSE(single.grids.determined);
+  EXPECT_GT(single.grids.any->open, 0U);
   EXPECT_GE(ends.grids.any->value.readings, 90U);
   EXPECT_GT(ends.grids.any->value.with_prior, plan.with_prior);
   EXPECT_GT(single.grids.any->value.with_prior, 2 * plan.with_prior);
   EXPECT_THAT(text, HasSubstr("a grid at the lowest and highest states (hall_degC = 18"));
+  EXPECT_GT(json["states"]["against"][0]["gain"].get<double>(), 1);
   EXPECT_GT(json["states"]["against"][1]["gain_with_prior"].get<double>(), 2);
 }
 
