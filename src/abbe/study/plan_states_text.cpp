@@ -16,24 +16,6 @@ constexpr std::size_t kStatesInText = 12;
 
 bool is_part_of_plan(const StudyPlan& result) { return result.states.any(); }
 
-std::string condition_words(const StudyPlan& result, std::size_t condition) {
-  const PlanningCondition& one = result.states.conditions()[condition];
-  const std::string states = result.states.words(one.states);
-  if (!result.states.has_course()) return states;
-  return fmt::format("{:.2f} h to {:.2f} h, about {}", one.from_s / kHour_s, one.to_s / kHour_s, states);
-}
-
-std::string conditions_list(const StudyPlan& result, const std::vector<std::size_t>& conditions) {
-  std::string words;
-  for (const std::size_t condition : conditions) {
-    words += fmt::format("{}{}", words.empty() ? "" : "; ",
-                         result.states.has_course()
-                             ? fmt::format("{:.2f} h", result.states.conditions()[condition].from_s / kHour_s)
-                             : condition_words(result, condition));
-  }
-  return words;
-}
-
 std::size_t readings_at_condition(const StudyPlan& result, std::size_t condition) {
   return static_cast<std::size_t>(
       std::count_if(result.readings.begin(), result.readings.end(),
@@ -93,6 +75,26 @@ nlohmann::ordered_json sensors_json(const SensorSelection& sensors) {
   return json;
 }
 
+}  // namespace
+
+std::string condition_words(const StudyPlan& result, std::size_t condition) {
+  const PlanningCondition& one = result.states.conditions()[condition];
+  const std::string states = result.states.words(one.states);
+  if (!result.states.has_course()) return states;
+  return fmt::format("{:.2f} h to {:.2f} h, about {}", one.from_s / kHour_s, one.to_s / kHour_s, states);
+}
+
+std::string conditions_list(const StudyPlan& result, const std::vector<std::size_t>& conditions) {
+  std::string words;
+  for (const std::size_t condition : conditions) {
+    words += fmt::format("{}{}", words.empty() ? "" : "; ",
+                         result.states.has_course()
+                             ? fmt::format("{:.2f} h", result.states.conditions()[condition].from_s / kHour_s)
+                             : condition_words(result, condition));
+  }
+  return words;
+}
+
 nlohmann::ordered_json states_json(const Study& study, const std::vector<double>& states) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (std::size_t j = 0; j < states.size(); ++j) {
@@ -100,82 +102,6 @@ nlohmann::ordered_json states_json(const Study& study, const std::vector<double>
   }
   return json;
 }
-
-std::string plain_words(const StudyPlan& result, const PlainStates& plain) {
-  const std::string where = conditions_list(result, plain.conditions);
-  if (plain.kind == PlainStates::Kind::ends) return "a grid at the lowest and highest states (" + where + ")";
-  return (result.states.has_course() ? "a grid at one time, from " : "a grid at one state, ") + where;
-}
-
-/// By how much the plan is better; none where one of the two leaves something open.
-std::optional<double> gain_over(const StudyPlan& result, const PlainStates& plain) {
-  if (!plain.grids.determined || leaves_states_open(result)) return std::nullopt;
-  return plain.grids.determined->value.uncertainty / result.uncertainty;
-}
-
-std::string plain_states_text(const StudyPlan& result) {
-  if (result.plain_states.empty()) return "";
-  std::string text = "\nagainst as many readings at plain states\n";
-  for (const PlainStates& plain : result.plain_states) {
-    text += "  " + plain_words(result, plain) + "\n";
-    if (const auto gain = gain_over(result, plain)) {
-      text += fmt::format("    {:.3f} um with {} readings ({}): the plan's is {:.2f} times smaller\n",
-                          1e3 * plain.grids.determined->value.uncertainty, plain.grids.determined->value.readings,
-                          plain.grids.determined->words, *gain);
-    } else {
-      text += fmt::format("    none of {} grids determines everything that the plan does\n", plain.grids.tried);
-    }
-    if (!plain.grids.any) continue;
-    const GridPoint& any = *plain.grids.any;
-    text += fmt::format(
-        "    with prior knowledge in both {:.3f} um ({}): the plan's {:.3f} um is {:.2f} times smaller\n",
-        1e3 * any.value.with_prior, any.words, 1e3 * result.with_prior, any.value.with_prior / result.with_prior);
-    if (any.open > 0)
-      text += fmt::format("    by itself it leaves {} directions open, most of all in {}\n", any.open, any.open_words);
-  }
-  return text;
-}
-
-nlohmann::json plain_states_table(const StudyPlan& result) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const PlainStates& plain : result.plain_states) {
-    const auto gain = gain_over(result, plain);
-    const std::string with_prior =
-        plain.grids.any ? fmt::format("{:.3f}", 1e3 * plain.grids.any->value.with_prior) : "";
-    rows.push_back(
-        {plain_words(result, plain),
-         plain.grids.determined ? fmt::format("{:.3f}", 1e3 * plain.grids.determined->value.uncertainty) : "open",
-         gain ? fmt::format("{:.2f}", *gain) : "", with_prior,
-         plain.grids.any ? fmt::format("{:.2f}", plain.grids.any->value.with_prior / result.with_prior) : ""});
-  }
-  return {{"title", "Against as many readings at plain states"},
-          {"columns",
-           {"readings", "uncertainty / \xC2\xB5m", "over the plan's", "with prior / \xC2\xB5m", "over the plan's"}},
-          {"rows", rows}};
-}
-
-nlohmann::ordered_json plain_json(const Study& study, const StudyPlan& result, const PlainStates& plain) {
-  nlohmann::ordered_json json;
-  json["kind"] = plain.kind == PlainStates::Kind::ends ? "lowest_and_highest" : "one";
-  for (const std::size_t condition : plain.conditions) {
-    json["at"].push_back(states_json(study, result.states.conditions()[condition].states));
-  }
-  json["grids_tried"] = plain.grids.tried;
-  json["determined"] = plain.grids.determined.has_value();
-  if (plain.grids.determined) {
-    json["uncertainty_um"] = 1e3 * plain.grids.determined->value.uncertainty;
-    json["readings"] = plain.grids.determined->value.readings;
-  }
-  if (const auto gain = gain_over(result, plain)) json["gain"] = *gain;
-  if (plain.grids.any) {
-    json["uncertainty_with_prior_um"] = 1e3 * plain.grids.any->value.with_prior;
-    json["open_directions"] = plain.grids.any->open;
-    json["gain_with_prior"] = plain.grids.any->value.with_prior / result.with_prior;
-  }
-  return json;
-}
-
-}  // namespace
 
 std::string open_states_words(const StudyPlan& result) {
   return fmt::format("not determined at these states ({})", open_text(result.conditions));
@@ -258,7 +184,8 @@ void add_planned_states(const Study& study, const StudyPlan& result, nlohmann::o
     states["uncertainty_over_states"].push_back(entry);
   }
   states["determined"] = !leaves_states_open(result);
-  for (const PlainStates& plain : result.plain_states) states["against"].push_back(plain_json(study, result, plain));
+  for (const PlainStates& plain : result.plain_states)
+    states["against"].push_back(plain_states_json(study, result, plain));
   if (!result.sensors.names.empty()) states["sensors"] = sensors_json(result.sensors);
   if (!result.states.notes().empty()) states["notes"] = result.states.notes();
   json["states"] = states;

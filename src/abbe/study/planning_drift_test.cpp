@@ -1,6 +1,5 @@
 // Plans of readings while set-ups drift.
 #include "abbe/study/planning_drift.h"
-#include "abbe/study/planning_schedule.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -17,6 +16,7 @@
 #include "abbe/geometry/decompositions.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/study/plan_text.h"
+#include "abbe/study/planning_schedule.h"
 #include "abbe/study/random_poses.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/setup_drifts.h"

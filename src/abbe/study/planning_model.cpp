@@ -20,6 +20,7 @@
 #include "abbe/study/campaign.h"
 #include "abbe/study/planned_readings.h"
 #include "abbe/study/planning.h"
+#include "abbe/study/planning_beside_drifts.h"
 #include "abbe/study/setup_drifts.h"
 
 namespace abbe {
@@ -29,8 +30,6 @@ using Eigen::Index;
 
 /// Poses at which the largest factors of states are looked for.
 constexpr std::size_t kFactorPoses = 50;
-/// Pivot of a drift's unknown, over the largest, below which it is a combination of others.
-constexpr double kDependentDrift = 1e-12;
 
 ErrorSet planned_errors(const Study& study) {
   ErrorSet errors;
@@ -73,39 +72,6 @@ InstrumentReadings empty_readings(const Machine& machine, const Instrument& devi
 std::vector<const double*> pointers(const PoseList& poses, std::size_t first = 0) {
   std::vector<const double*> result;
   for (const std::vector<double>& values : poses.axis) result.push_back(values.data() + first);
-  return result;
-}
-
-/// Rows of the estimates that are no drift, beside those that are: A - Q Q'A, with Q an orthonormal basis of the
-/// columns of the drift, over the readings and the priors of walks.
-PlanningCandidates beside_drifts(const Problem& problem, const PlanningCandidates& all,
-                                 const std::vector<InstrumentReadings>& readings) {
-  std::vector<Index> kept, drifting;
-  Index next = 0;
-  for (; next < static_cast<Index>(problem.machine_parameters.size()); ++next) kept.push_back(next);
-  for (std::size_t s = 0; s < readings.size(); ++s) {
-    const std::size_t count = problem.observations[s].unknowns.size();
-    const std::size_t of_drift = readings[s].drift != nullptr ? readings[s].drift->unknown_count() : 0;
-    for (std::size_t u = 0; u < count; ++u) (u + of_drift < count ? kept : drifting).push_back(next++);
-  }
-  const Eigen::MatrixXd priors = prior_rows(problem);
-  Eigen::MatrixXd rows(all.rows.rows() + priors.rows(), all.rows.cols());
-  rows.topRows(all.rows.rows()) = all.rows;
-  rows.bottomRows(priors.rows()) = priors;
-  Eigen::MatrixXd others = rows(Eigen::all, kept);
-  if (!drifting.empty()) {
-    Eigen::MatrixXd drift = rows(Eigen::all, drifting);
-    const Eigen::VectorXd norms = drift.colwise().norm().transpose();
-    drift *= norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; }).asDiagonal();
-    PivotedQr qr(drift);
-    qr.set_threshold(kDependentDrift);
-    const Eigen::MatrixXd basis = qr.orthonormal(qr.rank());
-    // Twice, so that what is left of a column that the drift explains is rounding of this column only.
-    for (int pass = 0; pass < 2; ++pass) others -= basis * (basis.transpose() * others);
-  }
-  PlanningCandidates result;
-  result.rows = others;
-  for (std::size_t k = 0; k <= static_cast<std::size_t>(others.rows()); ++k) result.first_row.push_back(k);
   return result;
 }
 
