@@ -41,6 +41,8 @@ RankedSensors rank_sensors(const Study& study, const Campaign& campaign, const P
                            const IdentifyOptions& options);
 
 std::string ranked_sensors_text(const RankedSensors& ranked);
+/// What is enough, and what remains with each number of sensors: a sentence for the report.
+std::string ranked_sensors_sentence(const RankedSensors& ranked);
 nlohmann::ordered_json ranked_sensors_json(const RankedSensors& ranked);
 
 }  // namespace abbe

@@ -15,6 +15,7 @@
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/identify/time_blocks.h"
+#include "abbe/study/report_identification.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/study_steps.h"
 #include "abbe/study/summary.h"
@@ -213,6 +214,7 @@ TEST(RankedSensors, AreReported) {
   EXPECT_THAT(text, HasSubstr("no gain"));
   EXPECT_THAT(text, HasSubstr("all without spindle_degC"));
   EXPECT_THAT(text, HasSubstr("note: column follows from column2"));
+  EXPECT_THAT(report_assumptions(study, result), testing::Contains(HasSubstr("; 2 of 4 are enough")));
   const nlohmann::ordered_json json = study_summary(study, result)["sensors"];
   EXPECT_EQ(json["added_in_turn"].size(), 5U);
   EXPECT_EQ(json["enough"], 2);

@@ -71,6 +71,18 @@ std::string ranked_sensors_text(const RankedSensors& ranked) {
   return text;
 }
 
+std::string ranked_sensors_sentence(const RankedSensors& ranked) {
+  std::string words = fmt::format("Sensors by {} held-out blocks of time, root mean square of their residuals: none {}",
+                                  ranked.blocks, held_out_words(ranked.forward.front()));
+  for (std::size_t k = 1; k < ranked.forward.size(); ++k) {
+    words +=
+        fmt::format(", {}{} {}", k > 1 ? "and " : "", added_sensor(ranked, ranked.forward[k - 1], ranked.forward[k]),
+                    held_out_words(ranked.forward[k]));
+  }
+  return words + fmt::format("; {} of {} {} enough (within a standard error of the best).", ranked.enough,
+                             ranked.names.size(), ranked.enough == 1 ? "is" : "are");
+}
+
 nlohmann::ordered_json ranked_sensors_json(const RankedSensors& ranked) {
   nlohmann::ordered_json json;
   json["ranked"] = ranked.done;
