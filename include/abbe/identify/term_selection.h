@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -56,5 +58,34 @@ struct TermSelection {
 /// @param problem  with all candidates; observations and errors stand where they stood afterwards
 TermSelection select_terms(const Problem& problem, const std::vector<CandidateTerm>& candidates,
                            const std::vector<TimeBlocks>& blocks, const TermSelectionOptions& options = {});
+
+/// The best model of some of the terms, and how it predicts.
+struct ModelOfTerms {
+  TermSelection selection;
+  std::vector<double> squares;             ///< [blocks] mean squared residual in variances of the readings; NaN: none
+  std::vector<std::size_t> block;          ///< [blocks] its number in TimeBlocks
+  std::vector<Eigen::VectorXd> estimates;  ///< [blocks] of the problem, without the readings of the block
+};
+
+/// Chooses again and again, with some of the terms left out altogether. Blocks are summed once, at the solution without
+/// any of the terms.
+class TermModels {
+ public:
+  /// @param problem  with all candidates; observations and errors stand where they stood afterwards
+  TermModels(const Problem& problem, const std::vector<CandidateTerm>& candidates,
+             const std::vector<TimeBlocks>& blocks, const TermSelectionOptions& options = {});
+  ~TermModels();
+  TermModels(const TermModels&) = delete;
+  TermModels& operator=(const TermModels&) = delete;
+
+  /// Of the model without any; not done: it could not be identified, and there is nothing to choose from.
+  const TermSelection& base() const;
+  /// @param allowed  [candidates] 0: not in the model, not even its lowest levels
+  ModelOfTerms best_of(const std::vector<std::uint8_t>& allowed);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace abbe

@@ -12,6 +12,7 @@
 #include "abbe/formats/study/study.h"
 #include "abbe/identify/problem.h"
 #include "abbe/instruments/instrument.h"
+#include "abbe/instruments/setup_drift.h"
 #include "abbe/plan/readings/planning.h"
 #include "abbe/study/job_options.h"
 #include "abbe/study/not_identified.h"
@@ -27,17 +28,25 @@ struct CandidateReading {
   std::size_t item = 0;        ///< index into Instrument::items()
   std::vector<double> inputs;  ///< [Instrument::inputs()]
   std::size_t condition = 0;   ///< index into PlannedStates::conditions()
+  std::size_t part = 0;        ///< of the measurement, where set-ups drift: parts follow each other
   bool operator<(const CandidateReading& other) const {
-    return std::tie(pose, setup, item, inputs, condition) <
-           std::tie(other.pose, other.setup, other.item, other.inputs, other.condition);
+    return std::tie(pose, setup, item, inputs, condition, part) <
+           std::tie(other.pose, other.setup, other.item, other.inputs, other.condition, other.part);
   }
 };
 
 /// Poses under one condition.
 struct PosesAt {
+  static constexpr std::size_t kEverySetup = static_cast<std::size_t>(-1);
   PoseList poses;
   std::size_t condition = 0;
+  std::size_t part = 0;             ///< as CandidateReading::part
+  std::size_t setup = kEverySetup;  ///< the one with which they are read
+  double time_s = 0;                ///< about when, where set-ups drift
 };
+
+/// How the set-ups of a study drift: one for each, null where it stands still; empty if nothing drifts.
+using PlannedDrifts = std::vector<std::shared_ptr<const SetupDrift>>;
 
 /// The identification problem of a study as far as it can be set up before anything is measured: all errors zero,
 /// instruments where the study says they stand.
@@ -48,8 +57,9 @@ struct PosesAt {
 class PlanningModel {
  public:
   /// @param errors  of zero, with the ranges over which they are to be known; null: those of the study
+  /// @param drifts  further unknowns of the set-ups, with their priors
   /// @throws InputError naming what is missing for a plan
-  explicit PlanningModel(const Study& study, const ErrorSet* errors = nullptr);
+  explicit PlanningModel(const Study& study, const ErrorSet* errors = nullptr, PlannedDrifts drifts = {});
 
   struct Candidates {
     PlanningCandidates rows;
@@ -64,9 +74,14 @@ class PlanningModel {
   /// The same at several conditions.
   Candidates readings_at(const std::vector<PosesAt>& tried, const std::vector<std::size_t>& sight = {}) const;
   /// Rows of readings that were candidates, at states of their own, in the order of the set-ups.
-  /// @param states  [readings][states of the machine]
+  ///
+  /// With times, the drift of the set-ups at these times is unknown too, as an identification has it. Its columns are
+  /// projected out: the rows, and some of the priors of its walks, are those of the other estimates beside it.
+  /// @param states  [readings][states of the machine], or empty
+  /// @param time_s  [readings], or empty: nothing drifts
   PlanningCandidates rows_of(const std::vector<CandidateReading>& readings,
-                             const std::vector<std::vector<double>>& states) const;
+                             const std::vector<std::vector<double>>& states,
+                             const std::vector<double>& time_s = {}) const;
 
   /// [poses] true where the functional point stands in a forbidden box.
   std::vector<bool> forbidden(const PoseList& poses) const;
@@ -107,13 +122,15 @@ class PlanningModel {
   void add_given(std::size_t setup);
   void see(std::size_t setup, const InstrumentReadings& plan, std::vector<InstrumentReadings>& readings,
            Candidates& result) const;
-  void see_poses(const PoseList& poses, const std::vector<std::size_t>& sight,
-                 std::vector<InstrumentReadings>& readings, Candidates& result) const;
+  void see_poses(const PosesAt& at, const std::vector<std::size_t>& sight, std::vector<InstrumentReadings>& readings,
+                 Candidates& result) const;
   void find_states();
+  std::vector<InstrumentReadings> no_readings() const;
   InstrumentReadings sight_plan(const Sight& sight, const PoseList& poses, Candidates& result) const;
 
   Study study_;
   ErrorSet errors_;
+  PlannedDrifts drifts_;
   PlannedStates states_;
   std::vector<std::size_t> state_of_;   ///< [p]
   std::vector<double> largest_factor_;  ///< [states of the machine]
@@ -149,6 +166,17 @@ struct GridsOfANumber {
   std::optional<GridPoint> any;         ///< the best one with the weak prior, whether it determines everything or not
 };
 
+/// As many readings as a plan over states has, without its choice of states.
+struct PlainStates {
+  enum class Kind {
+    ends,  ///< a grid at the lowest and at the highest states
+    one    ///< a grid at one condition: in a course in one go, from there on
+  };
+  Kind kind = Kind::ends;
+  std::vector<std::size_t> conditions;  ///< indices into PlannedStates::conditions(); of one: the best of some
+  GridsOfANumber grids;
+};
+
 /// One combination of the set-ups and what it would be worth.
 struct SetupChoice {
   std::size_t subset = 0;  ///< bit s: Study::setups[s] takes part
@@ -174,6 +202,17 @@ struct UncertaintyAtStates {
   std::vector<double> states;  ///< [states of the machine]
   double time_s = 0;           ///< of the course
   double uncertainty = 0;      ///< mm, root mean square of the volumetric standard uncertainty over the poses
+};
+
+/// What the drift of set-ups makes of a plan.
+struct PlanBesideDrift {
+  std::vector<std::string> setups;  ///< what each of those that drift does; empty: nothing drifts
+  bool determined = true;           ///< false: what is asked for cannot be told from the drift
+  double still = 0;                 ///< mm, the uncertainty of the same readings if nothing drifted
+  std::size_t parts = 0;            ///< of the measurement, among which poses were shared out
+  std::size_t poses = 0;            ///< different ones
+  std::size_t returned_to = 0;      ///< of these, left and visited again
+  std::size_t most_visits = 0;      ///< of one pose
 };
 
 /// A plan of readings and what it is worth.
@@ -206,6 +245,8 @@ struct StudyPlan {
   std::vector<std::vector<double>> reading_states;  ///< [readings][states of the machine]
   std::vector<UncertaintyAtStates> over_states;
   SensorSelection sensors;
+  std::vector<PlainStates> plain_states;  ///< that were compared
+  PlanBesideDrift drift;
 };
 
 /// Whether readings at the conditions of a plan leave open what the errors do at the states at which they will be used.
@@ -248,5 +289,10 @@ std::string open_errors(const PlanningModel& model, const PlanningSpace& space, 
 /// @throws Stopped
 void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
                         StudyPlan& result, const std::stop_token& stop = {});
+
+/// Looks for grids at plain states: the lowest and the highest, or one condition; as many readings as the plan has.
+/// @throws Stopped
+void compare_with_plain_states(const PlanningModel& model, const PlanningSpace& space,
+                               const Eigen::MatrixXd& predictions, StudyPlan& result, const std::stop_token& stop = {});
 
 }  // namespace abbe

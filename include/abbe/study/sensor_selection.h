@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -79,5 +80,10 @@ SensorSelection select_sensors(const std::vector<std::string>& names,
 /// Courses that follow from others, by regression with a constant.
 /// @param course  [times, courses]
 std::vector<SensorLikeness> like_sensors(const Eigen::MatrixXd& course);
+
+/// "hall follows from column: 0.02 of its deviation of 2.1 (root mean square) remain"
+/// @param courses  their names
+std::string likeness_words(const std::vector<std::string>& courses, const SensorLikeness& one);
+nlohmann::ordered_json likeness_json(const std::vector<std::string>& courses, const SensorLikeness& one);
 
 }  // namespace abbe

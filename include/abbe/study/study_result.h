@@ -17,6 +17,7 @@
 #include "abbe/study/chosen_terms.h"
 #include "abbe/study/model.h"
 #include "abbe/study/not_identified.h"
+#include "abbe/study/ranked_sensors.h"
 #include "abbe/study/unseen.h"
 #include "abbe/verify/error_map.h"
 #include "abbe/verify/left_out_poses.h"
@@ -60,11 +61,12 @@ struct StudyResult {
   std::optional<VolumetricFigures> volumetric;  ///< over the grid of all commands; usable results only
   std::optional<StudyMap> map;
   std::vector<std::string> warnings;
-  std::vector<Advice> advice;           ///< what the readings do not see, and what would show it
-  NotIdentified not_identified;         ///< errors of the machine that are not in the model; empty unless usable
-  std::vector<Distrust> distrusted;     ///< why a usable result must not be used as it is, see judge_trust()
-  bool misfit_accepted = false;         ///< the user wants to use it nevertheless
-  std::optional<EarlierResult> before;  ///< where the study names one
+  std::vector<Advice> advice;            ///< what the readings do not see, and what would show it
+  NotIdentified not_identified;          ///< errors of the machine that are not in the model; empty unless usable
+  std::vector<Distrust> distrusted;      ///< why a usable result must not be used as it is, see judge_trust()
+  bool misfit_accepted = false;          ///< the user wants to use it nevertheless
+  std::optional<EarlierResult> before;   ///< where the study names one
+  std::optional<RankedSensors> sensors;  ///< where the study wants them ranked
 
   /// True if the result may be used: converged and nothing impossible.
   bool usable() const { return identification.status == IdentifyStatus::converged; }

@@ -6,16 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/text/input_error.h"
+#include "abbe/study/planned_terms.h"
 
 namespace abbe {
 namespace {
-
-/// A candidate and where it stands in the plan.
-struct PlannedTerm {
-  CandidateTerm term;
-  bool is_location = false;
-  std::size_t index = 0;
-};
 
 bool grows_by_coefficients(BasisKind kind) {
   return kind == BasisKind::monomial || kind == BasisKind::legendre || kind == BasisKind::chebyshev ||
@@ -28,7 +22,9 @@ std::size_t functions_at(const Basis& basis, int order) {
   return basis.kind == BasisKind::fourier ? 2 * n + 1 : n + 1;
 }
 
-std::vector<PlannedTerm> planned_terms(const Study& study, const ErrorSet& errors) {
+}  // namespace
+
+std::vector<PlannedTerm> planned_terms(const Study& study, const ErrorSet& errors, TermsWanted wanted) {
   const IdentificationPlan& plan = *study.identification;
   std::vector<PlannedTerm> result;
   std::size_t next = 0;
@@ -37,8 +33,10 @@ std::vector<PlannedTerm> planned_terms(const Study& study, const ErrorSet& error
     next += errors.motions[m].coefficients.size();
     const IdentifiedMotion& motion = plan.motions[m];
     const bool several = motion.smallest_order < motion.basis.order && grows_by_coefficients(motion.basis.kind);
-    if (motion.state == kNoState || !(motion.optional || several)) continue;
+    if (motion.state == kNoState) continue;
+    if (!(motion.optional || several) && wanted == TermsWanted::to_be_chosen) continue;
     PlannedTerm planned;
+    planned.state = motion.state;
     planned.index = m;
     planned.term.name = error_motion_name(study.machine, motion.axis, motion.component, motion.state);
     planned.term.least = motion.optional ? 0 : 1;
@@ -52,12 +50,27 @@ std::vector<PlannedTerm> planned_terms(const Study& study, const ErrorSet& error
   }
   for (std::size_t l = 0; l < errors.locations.size(); ++l, ++next) {
     const IdentifiedLocation& location = plan.locations[l];
-    if (!location.optional) continue;
+    if (location.state == kNoState || (!location.optional && wanted == TermsWanted::to_be_chosen)) continue;
     const std::string name = location_error_name(study.machine, location.axis, location.component, location.state);
-    result.push_back({{name, {{next}}, 0}, true, l});
+    result.push_back({{name, {{next}}, location.optional ? 0U : 1U}, true, l, location.state});
   }
   return result;
 }
+
+std::vector<TimeBlocks> blocks_of_time(const Study& study, const Campaign& campaign, const std::string& what) {
+  const IdentificationPlan& plan = *study.identification;
+  std::vector<std::vector<double>> times;
+  for (const CampaignSetup& setup : campaign.setups) {
+    if (setup.readings.time_s.empty()) {
+      throw InputError({.field = setup.name}, what + " by blocks of time, and readings have no times",
+                       "a column time_s");
+    }
+    times.push_back(setup.readings.time_s);
+  }
+  return divide_by_time(times, plan.time_blocks, plan.time_gap_s);
+}
+
+namespace {
 
 IdentificationPlan plan_of(const IdentificationPlan& all, const std::vector<PlannedTerm>& terms,
                            const std::vector<std::size_t>& levels) {
@@ -93,16 +106,9 @@ std::string level_words(const ChosenTerms& terms, const TakenTerm& taken) {
 ChosenTerms choose_terms(const Study& study, const Campaign& campaign, const Problem& problem,
                          const IdentifyOptions& options) {
   const IdentificationPlan& plan = *study.identification;
-  std::vector<std::vector<double>> times;
-  for (const CampaignSetup& setup : campaign.setups) {
-    if (setup.readings.time_s.empty()) {
-      throw InputError({.field = setup.name},
-                       "terms with states are chosen by blocks of time, and readings have no times", "a column time_s");
-    }
-    times.push_back(setup.readings.time_s);
-  }
+  const std::vector<TimeBlocks> blocks = blocks_of_time(study, campaign, "terms with states are chosen");
   ChosenTerms result;
-  const std::vector<PlannedTerm> planned = planned_terms(study, problem.errors);
+  const std::vector<PlannedTerm> planned = planned_terms(study, problem.errors, TermsWanted::to_be_chosen);
   std::vector<CandidateTerm> candidates;
   for (const PlannedTerm& one : planned) {
     result.candidates.push_back(one.term.name);
@@ -111,8 +117,7 @@ ChosenTerms choose_terms(const Study& study, const Campaign& campaign, const Pro
   }
   TermSelectionOptions selection;
   selection.identify = options;
-  result.selection =
-      select_terms(problem, candidates, divide_by_time(times, plan.time_blocks, plan.time_gap_s), selection);
+  result.selection = select_terms(problem, candidates, blocks, selection);
   result.plan = result.selection.done ? plan_of(plan, planned, result.selection.levels) : plan;
   return result;
 }

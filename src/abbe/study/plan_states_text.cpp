@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "abbe/machine/state.h"
 
@@ -14,24 +15,6 @@ constexpr double kHour_s = 3600;
 constexpr std::size_t kStatesInText = 12;
 
 bool is_part_of_plan(const StudyPlan& result) { return result.states.any(); }
-
-std::string condition_words(const StudyPlan& result, std::size_t condition) {
-  const PlanningCondition& one = result.states.conditions()[condition];
-  const std::string states = result.states.words(one.states);
-  if (!result.states.has_course()) return states;
-  return fmt::format("{:.2f} h to {:.2f} h, about {}", one.from_s / kHour_s, one.to_s / kHour_s, states);
-}
-
-std::string conditions_list(const StudyPlan& result, const std::vector<std::size_t>& conditions) {
-  std::string words;
-  for (const std::size_t condition : conditions) {
-    words += fmt::format("{}{}", words.empty() ? "" : "; ",
-                         result.states.has_course()
-                             ? fmt::format("{:.2f} h", result.states.conditions()[condition].from_s / kHour_s)
-                             : condition_words(result, condition));
-  }
-  return words;
-}
 
 std::size_t readings_at_condition(const StudyPlan& result, std::size_t condition) {
   return static_cast<std::size_t>(
@@ -50,15 +33,6 @@ std::vector<std::size_t> conditions_in_turn(const StudyPlan& result) {
     if (std::find(order.begin(), order.end(), reading.condition) == order.end()) order.push_back(reading.condition);
   }
   return order;
-}
-
-std::string likeness_words(const SensorSelection& sensors, const SensorLikeness& one) {
-  const std::string& name = sensors.courses[one.sensor];
-  if (one.still()) return fmt::format("{} does not change: what depends on it is not told apart from the rest", name);
-  const std::string other =
-      one.other == SensorLikeness::kAllOthers ? "the others together" : sensors.courses[one.other];
-  return fmt::format("{} follows from {}: {:.3g} of its deviation of {:.3g} (root mean square) remain", name, other,
-                     one.left, one.whole);
 }
 
 std::string enough_sensor_words(const SensorSelection& sensors) {
@@ -82,7 +56,7 @@ std::string sensors_text(const SensorSelection& sensors) {
                         sensors.names[sensors.forward[k].sensor]);
   }
   text += "  " + enough_sensor_words(sensors) + "\n";
-  for (const SensorLikeness& one : sensors.likely) text += "  note: " + likeness_words(sensors, one) + "\n";
+  for (const SensorLikeness& one : sensors.likely) text += "  note: " + likeness_words(sensors.courses, one) + "\n";
   return text;
 }
 
@@ -97,18 +71,28 @@ nlohmann::ordered_json sensors_json(const SensorSelection& sensors) {
     json["added_in_turn"].push_back({{"sensor", sensors.names[step.sensor]}, {"error_um", 1e3 * step.error}});
   }
   json["enough"] = sensors.enough;
-  for (const SensorLikeness& one : sensors.likely) {
-    nlohmann::ordered_json entry = {{"state", sensors.courses[one.sensor]}};
-    if (one.still()) {
-      entry["does_not_change"] = true;
-    } else {
-      entry["follows_from"] = one.other == SensorLikeness::kAllOthers ? "others" : sensors.courses[one.other];
-      entry["deviation"] = one.whole;
-      entry["remains"] = one.left;
-    }
-    json["alike"].push_back(entry);
-  }
+  for (const SensorLikeness& one : sensors.likely) json["alike"].push_back(likeness_json(sensors.courses, one));
   return json;
+}
+
+}  // namespace
+
+std::string condition_words(const StudyPlan& result, std::size_t condition) {
+  const PlanningCondition& one = result.states.conditions()[condition];
+  const std::string states = result.states.words(one.states);
+  if (!result.states.has_course()) return states;
+  return fmt::format("{:.2f} h to {:.2f} h, about {}", one.from_s / kHour_s, one.to_s / kHour_s, states);
+}
+
+std::string conditions_list(const StudyPlan& result, const std::vector<std::size_t>& conditions) {
+  std::string words;
+  for (const std::size_t condition : conditions) {
+    words += fmt::format("{}{}", words.empty() ? "" : "; ",
+                         result.states.has_course()
+                             ? fmt::format("{:.2f} h", result.states.conditions()[condition].from_s / kHour_s)
+                             : condition_words(result, condition));
+  }
+  return words;
 }
 
 nlohmann::ordered_json states_json(const Study& study, const std::vector<double>& states) {
@@ -118,8 +102,6 @@ nlohmann::ordered_json states_json(const Study& study, const std::vector<double>
   }
   return json;
 }
-
-}  // namespace
 
 std::string open_states_words(const StudyPlan& result) {
   return fmt::format("not determined at these states ({})", open_text(result.conditions));
@@ -165,6 +147,7 @@ std::string planned_states_text(const Study& study, const StudyPlan& result) {
                         result.states.has_course() ? fmt::format("{:.2f} h, ", at.time_s / kHour_s) : "",
                         result.states.words(at.states));
   }
+  text += plain_states_text(result);
   if (!result.sensors.names.empty()) text += sensors_text(result.sensors);
   for (const std::string& note : result.states.notes()) text += "note: " + note + "\n";
   return text;
@@ -201,6 +184,8 @@ void add_planned_states(const Study& study, const StudyPlan& result, nlohmann::o
     states["uncertainty_over_states"].push_back(entry);
   }
   states["determined"] = !leaves_states_open(result);
+  for (const PlainStates& plain : result.plain_states)
+    states["against"].push_back(plain_states_json(study, result, plain));
   if (!result.sensors.names.empty()) states["sensors"] = sensors_json(result.sensors);
   if (!result.states.notes().empty()) states["notes"] = result.states.notes();
   json["states"] = states;
@@ -233,6 +218,7 @@ nlohmann::json planned_states_tables(const StudyPlan& result) {
   tables.push_back({{"title", "Uncertainty where the errors are used"},
                     {"columns", {"time / h", "states", "uncertainty / \xC2\xB5m"}},
                     {"rows", rows}});
+  if (!result.plain_states.empty()) tables.push_back(plain_states_table(result));
   if (result.sensors.names.empty()) return tables;
   rows = nlohmann::json::array();
   for (const SensorStep& step : result.sensors.without) {
@@ -245,7 +231,8 @@ nlohmann::json planned_states_tables(const StudyPlan& result) {
   std::string note =
       fmt::format("With all sensors {:.3f} \xC2\xB5m remain, without any {:.3f} \xC2\xB5m. {}.",
                   1e3 * result.sensors.all, 1e3 * result.sensors.none, enough_sensor_words(result.sensors));
-  for (const SensorLikeness& one : result.sensors.likely) note += " " + likeness_words(result.sensors, one) + ".";
+  for (const SensorLikeness& one : result.sensors.likely)
+    note += " " + likeness_words(result.sensors.courses, one) + ".";
   tables.push_back(
       {{"title", "Which sensors matter"},
        {"columns", {"sensor", "without it / \xC2\xB5m", "added as number", "with those added / \xC2\xB5m"}},

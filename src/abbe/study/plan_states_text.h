@@ -25,4 +25,14 @@ std::string states_of_planned_reading(const StudyPlan& result, std::size_t readi
 /// what errors do where they are used.
 std::string open_states_words(const StudyPlan& result);
 
+/// "hall_degC = 18; hall_degC = 24", or the times of a course.
+std::string conditions_list(const StudyPlan& result, const std::vector<std::size_t>& conditions);
+std::string condition_words(const StudyPlan& result, std::size_t condition);
+nlohmann::ordered_json states_json(const Study& study, const std::vector<double>& states);
+
+/// Against as many readings at plain states; nothing where none were compared.
+std::string plain_states_text(const StudyPlan& result);
+nlohmann::ordered_json plain_states_json(const Study& study, const StudyPlan& result, const PlainStates& plain);
+nlohmann::json plain_states_table(const StudyPlan& result);
+
 }  // namespace abbe

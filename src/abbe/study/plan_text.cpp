@@ -10,6 +10,7 @@
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/drawings/svg_plot.h"
 #include "abbe/study/plan_states_text.h"
+#include "abbe/study/planning_drift.h"
 
 namespace abbe {
 namespace {
@@ -120,7 +121,7 @@ std::string plan_csv(const Study& study, const StudyPlan& result) {
   for (const Axis& axis : study.machine.axes) text += fmt::format("{}_{},", axis.name, position_suffix(axis));
   if (columns.setup) text += "setup,";
   if (columns.station) text += "station,";
-  const bool timed = result.states.has_course();
+  const bool timed = result.states.has_course() || !result.drift.setups.empty();
   const std::vector<double> times =
       timed ? reading_times(study, result.readings, result.states) : std::vector<double>();
   text += columns.target + (timed ? ",time_s" : "") + state_heads_of_plan(study, result) + "\n";
@@ -185,6 +186,7 @@ nlohmann::ordered_json plan_json(const Study& study, const StudyPlan& result) {
     json["combinations"].push_back(entry);
   }
   add_planned_states(study, result, json);
+  if (!result.drift.setups.empty()) json["drift"] = planned_drift_json(result);
   if (result.plan.status != PlanningStatus::done) return json;
   json["readings"] = result.readings.size();
   if (has_other_instruments(study)) {
@@ -249,7 +251,7 @@ std::string study_plan_text(const Study& study, const StudyPlan& result) {
   text += fmt::format("{} parameters, of which the candidates see {} directions\n", result.parameters, result.seen);
   if (result.plan.status != PlanningStatus::done) {
     text += fmt::format("no plan: {}\n", status_text(result.plan.status));
-    return text + planned_states_text(study, result);
+    return text + planned_drift_text(result) + planned_states_text(study, result);
   }
   text += combinations_text(result);
   if (result.unseen_part > 1e-6)
@@ -268,6 +270,7 @@ std::string study_plan_text(const Study& study, const StudyPlan& result) {
   if (!result.not_identified.errors.empty())
     text += fmt::format("  of the {}: not in the model and not covered are {}\n", kIdentifiedErrorsOnly,
                         not_identified_names(study, result.not_identified));
+  text += planned_drift_text(result);
   text += planned_states_text(study, result);
   text += fmt::format("\nhow many are enough: {}\n", result.enough_words);
   const bool grids = result.grids_tried > 0;

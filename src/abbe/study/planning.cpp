@@ -7,13 +7,13 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <set>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/study/campaign.h"
 #include "abbe/study/model.h"
 #include "abbe/study/planning_conditions.h"
+#include "abbe/study/planning_drift.h"
 #include "abbe/study/planning_schedule.h"
 #include "abbe/study/planning_setting.h"
 #include "abbe/study/random_poses.h"
@@ -26,7 +26,6 @@ constexpr int kTimeRounds = 6;
 constexpr int kCourseRounds = 20;
 constexpr std::size_t kRandomDraws = 9;
 constexpr int kRefinements = 4;
-constexpr std::size_t kPosesAround = 6;
 constexpr double kLeastCost_s = 1e-3;
 constexpr std::size_t kMostTogether = 6;
 constexpr std::size_t kPosesToCompare = 600;  // conditions by
@@ -39,34 +38,6 @@ enum class PlanningDepth {
   choice,  ///< readings and their uncertainty
   whole    ///< refined and compared with other choices
 };
-
-/// The poses of readings, and beside each some in which one or two axes stand elsewhere (coordinate exchange; Meyer and
-/// Nachtsheim, Technometrics 37 (1995) 60): at an end, in the middle, or anywhere.
-PoseList poses_around(const PlanningStudy& plan, const std::vector<CandidateReading>& readings, std::size_t condition,
-                      std::uint64_t seed) {
-  PoseList poses;
-  std::set<std::vector<double>> known;
-  for (const CandidateReading& reading : readings)
-    if (reading.condition == condition && known.insert(reading.pose).second) poses.append(reading.pose);
-  const std::size_t given = poses.count();
-  for (std::size_t k = 0; k < given; ++k)
-    for (std::size_t n = 0; n < kPosesAround; ++n) {
-      RandomStream random(seed, k * kPosesAround + n);
-      std::vector<double> pose = poses.pose(k);
-      for (std::size_t change = 0; change < 1 + n % 2; ++change) {
-        const std::size_t i =
-            std::min(pose.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(pose.size())));
-        const AxisRange& range = plan.axes[i];
-        const double share = random.uniform(), anywhere = random.uniform(range.from, range.to);
-        pose[i] = share < 0.25   ? range.from
-                  : share < 0.5  ? range.to
-                  : share < 0.65 ? (range.from + range.to) / 2
-                                 : anywhere;
-      }
-      if (known.insert(pose).second) poses.append(pose);
-    }
-  return poses;
-}
 
 double root_mean_square(const PlanValue& value, const Eigen::MatrixXd& predictions) {
   return std::sqrt(value.variance / (static_cast<double>(predictions.rows()) / 3));
@@ -137,16 +108,6 @@ void check_costs(const Study& study) {
   }
 }
 
-/// What every candidate costs, s, without the way to it; where some cost something else than others.
-void add_costs(const Study& study, PlanningModel::Candidates& candidates) {
-  const PlanningStudy& plan = *study.planning;
-  if (plan.time <= 0 || plan.setups.empty()) return;
-  for (const CandidateReading& reading : candidates.readings) {
-    const std::string& setup = study.setups[reading.setup].name;
-    candidates.rows.cost_s.push_back(std::max(kLeastCost_s, plan.settle_of(setup) + plan.reading_of(setup)));
-  }
-}
-
 StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ConditionsOfANumber& at,
                           const ShareCallback& progress, const std::stop_token& stop) {
   progress(0);
@@ -162,7 +123,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
   result.candidates = candidates.readings.size();
   result.hidden = candidates.hidden;
   result.forbidden = candidates.forbidden;
-  add_costs(study, candidates);
+  add_reading_costs(study, candidates);
   auto space = std::make_unique<const PlanningSpace>(candidates.rows, model.known());
   result.parameters = space->parameter_count();
   result.seen = space->dimension();
@@ -228,17 +189,18 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
         rows.row(next++) = candidates.rows.rows.row(static_cast<Eigen::Index>(k));
     return rows;
   };
+  const bool drifting = has_drift(study);
   if (depth == PlanningDepth::choice) {
-    result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
+    const PlanningCandidates::Rows rows =
+        drifting ? rows_as_taken(model, result.readings).rows : rows_of(result.plan.chosen);
+    result.with_prior = uncertainty_with_prior(model, rows, predictions);
     return result;
   }
-  try_at_random(*space, predictions, study.seed, stop, result);
+  if (!drifting) try_at_random(*space, predictions, study.seed, stop, result);
 
-  const bool may_stand_anywhere =
-      !plan.grid && model.sights_stand_anywhere() &&
-      std::none_of(plan.axes.begin(), plan.axes.end(), [](const AxisRange& range) { return range.step > 0; });
+  const bool stands_anywhere = may_stand_anywhere(model);
   options.progress = [&stop](double) { stop_if_asked(stop); };
-  for (int round = 0; round < kRefinements && may_stand_anywhere; ++round) {
+  for (int round = 0; round < kRefinements && stands_anywhere; ++round) {
     std::vector<PosesAt> tried;
     for (const std::size_t condition : conditions) {
       const std::uint64_t seed = study.seed * 31 + static_cast<std::uint64_t>(round) + kSeedOfCondition * condition;
@@ -246,7 +208,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
       if (tried.back().poses.count() == 0) tried.pop_back();
     }
     PlanningModel::Candidates around = model.readings_at(tried);
-    add_costs(study, around);
+    add_reading_costs(study, around);
     auto space_around = std::make_unique<const PlanningSpace>(around.rows, model.known());
     if (space_around->dimension() != space->dimension()) break;
     std::map<CandidateReading, std::size_t> places;
@@ -268,8 +230,14 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
     result.refinements = round + 1;
     progress(0.6 + 0.2 * (round + 1) / kRefinements);
   }
-  result.uncertainty = root_mean_square(value_of(*space, result.plan.chosen, predictions), predictions);
-  result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
+  TimedCandidates timed;
+  if (drifting) {
+    timed = choose_in_time(setting, *space, options, result, stop);
+    if (result.plan.status != PlanningStatus::done) return result;
+  } else {
+    result.uncertainty = root_mean_square(value_of(*space, result.plan.chosen, predictions), predictions);
+    result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
+  }
 
   if (!ConditionGroups::fit(model, result.readings)) {
     throw InputError({.field = "plan.course"}, "the readings do not end within their parts of the course",
@@ -287,7 +255,9 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
     const auto number = static_cast<std::size_t>(share * static_cast<double>(result.readings.size()));
     if (number >= 1 && number <= space->count() && (counts.empty() || number > counts.back())) counts.push_back(number);
   }
-  const std::vector<ReadingPlan> curve = plan_curve(*space, curve_options, counts);
+  if (drifting) add_choices_in_time(setting, *space, timed, curve_options, counts, result, stop);
+  const std::vector<ReadingPlan> curve =
+      drifting ? std::vector<ReadingPlan>() : plan_curve(*space, curve_options, counts);
   for (std::size_t k = 0; k < curve.size(); ++k) {
     PlanPoint point{counts[k], curve[k].status == PlanningStatus::done, 0, 0};
     if (point.determined) point.with_prior = uncertainty_with_prior(model, rows_of(curve[k].chosen), predictions);
@@ -299,6 +269,9 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
   progress(0.85);
   if (model.sights_stand_anywhere() && !model.has_given_readings() && !model.states().any()) {
     compare_with_grids(model, *space, predictions, result, stop);
+  }
+  if (model.sights_stand_anywhere() && !model.has_given_readings() && model.states().any()) {
+    compare_with_plain_states(model, *space, predictions, result, stop);
   }
   result.not_identified = find_not_in_model(study, model.errors());
   progress(1);

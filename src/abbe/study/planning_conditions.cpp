@@ -6,6 +6,7 @@
 
 #include "abbe/geometry/decompositions.h"
 #include "abbe/instruments/path_plan.h"
+#include "abbe/study/planning_drift.h"
 #include "abbe/study/planning_schedule.h"
 
 namespace abbe {
@@ -293,25 +294,33 @@ bool ConditionGroups::fit(const PlanningModel& model, const std::vector<Candidat
 void judge_over_states(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
                        StudyPlan& result) {
   const PlannedStates& states = model.states();
-  if (!states.any()) return;
+  const bool drifting = has_drift(model.study());
+  if (!states.any() && !drifting) return;
   if (states.has_course()) {
     result.reading_states = states.at_times(reading_times(model.study(), result.readings, states));
-  } else {
+  } else if (states.any()) {
     for (const CandidateReading& reading : result.readings) {
       result.reading_states.push_back(states.conditions()[reading.condition].states);
     }
   }
-  const PlanningCandidates rows = model.rows_of(result.readings, result.reading_states);
+  const auto root_mean = [&predictions](const Eigen::VectorXd& variance) {
+    return std::sqrt(variance.sum() / (static_cast<double>(predictions.rows()) / 3));
+  };
+  const auto variances = [&](const PlanningCandidates& rows) {
+    // What is open has no uncertainty without prior knowledge.
+    return leaves_states_open(result) ? variances_with_prior(model, rows, predictions)
+                                      : variances_of(space, rows, predictions);
+  };
+  const PlanningCandidates rows = rows_as_taken(model, result.readings);
   if (!value_of(space, rows, predictions).determined) {
     result.plan.status = PlanningStatus::not_determined;
     return;
   }
-  // What is open has no uncertainty without prior knowledge.
-  const Eigen::VectorXd variance = leaves_states_open(result) ? variances_with_prior(model, rows, predictions)
-                                                              : variances_of(space, rows, predictions);
-  const auto poses = static_cast<double>(predictions.rows()) / 3;
-  result.uncertainty = std::sqrt(variance.sum() / poses);
+  const Eigen::VectorXd variance = variances(rows);
+  result.uncertainty = root_mean(variance);
+  if (drifting) result.drift.still = root_mean(variances(model.rows_of(result.readings, result.reading_states)));
   result.with_prior = uncertainty_with_prior(model, rows.rows, predictions);
+  if (!states.any()) return;
   const std::size_t used = states.used_at().size();
   std::vector<double> sum(used, 0), number(used, 0);
   for (Index row = 0; row < variance.size(); ++row) {

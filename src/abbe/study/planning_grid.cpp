@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/geometry/decompositions.h"
-#include "abbe/geometry/singular_values.h"
 #include "abbe/study/planning.h"
+#include "abbe/study/planning_drift.h"
+#include "abbe/study/planning_schedule.h"
 
 namespace abbe {
 namespace {
 
-using Eigen::Index;
 using Counts = std::vector<std::size_t>;
 // A grid may have up to this many times the readings it is compared with, never fewer.
 constexpr double kMostOfTheNumber = 1.2;
@@ -21,7 +22,6 @@ constexpr std::size_t kMostGrids = 40;
 constexpr std::size_t kLookedAt = 12;
 constexpr std::size_t kMostPerAxis = 12;
 constexpr double kLargerNumbers[] = {2.5, 3, 4};
-constexpr std::size_t kMostNamed = 8;
 
 /// Poses in a regular order, and which sight is used at each.
 struct Grid {
@@ -47,13 +47,15 @@ void thin(std::vector<T>& list, std::size_t most) {
 
 class GridSearch {
  public:
+  /// @param conditions  at which every grid is gone through
   GridSearch(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
-             StudyPlan& result, const std::stop_token& stop)
+             StudyPlan& result, const std::stop_token& stop, std::vector<std::size_t> conditions = {0})
       : model_(model),
         space_(space),
         predictions_(predictions),
         result_(result),
         stop_(stop),
+        conditions_(std::move(conditions)),
         ranges_(model.study().planning->axes) {
     const double all = static_cast<double>(result.candidates + result.hidden);
     visible_ = all > 0 ? static_cast<double>(result.candidates) / all : 1;
@@ -72,6 +74,9 @@ class GridSearch {
     }
   }
 
+  /// Of as many readings as the plan has.
+  GridsOfANumber of_same_number() { return best_of(result_.readings.size()); }
+
  private:
   const Machine& machine() const { return model_.study().machine; }
   bool rotary(std::size_t i) const { return machine().axes[i].kind == AxisKind::rotary; }
@@ -83,14 +88,16 @@ class GridSearch {
       PlanningModel::Candidates readings;
     };
     std::vector<Grid> grids;
-    add_factorial(number, grids);
-    add_composite(number, grids);
+    const std::size_t at_each = number / conditions_.size();
+    add_factorial(at_each, grids);
+    add_composite(at_each, grids);
     std::vector<Tried> tried;
     for (const Grid& grid : grids) {
       stop_if_asked(stop_);
-      PlanningModel::Candidates readings = model_.readings_at(grid.poses, grid.sight);
+      PlanningModel::Candidates readings = readings_of(grid, conditions_);
       const std::size_t count = readings.readings.size();
       if (count < number || static_cast<double>(count) > kMostOfTheNumber * static_cast<double>(number)) continue;
+      if (!take(readings)) continue;
       const double with_prior = uncertainty_with_prior(model_, readings.rows.rows, predictions_);
       tried.push_back({with_prior, &grid, std::move(readings)});
     }
@@ -98,17 +105,37 @@ class GridSearch {
                      [](const Tried& a, const Tried& b) { return a.with_prior < b.with_prior; });
     GridsOfANumber best;
     best.tried = tried.size();
-    result_.grids_tried += tried.size();
+    const bool counts = !model_.states().any();
+    if (counts) result_.grids_tried += tried.size();
     for (std::size_t k = 0; k < std::min(tried.size(), kLookedAt); ++k) {
       const GridPoint point = evaluate(*tried[k].grid, tried[k].readings, tried[k].with_prior);
       if (!best.any) best.any = point;
       if (!point.value.determined) continue;
       if (!best.determined || point.value.uncertainty < best.determined->value.uncertainty) best.determined = point;
-      if (point.value.uncertainty <= result_.uncertainty &&
+      if (counts && point.value.uncertainty <= result_.uncertainty &&
           (!result_.equal_grid || point.value.readings < result_.equal_grid->value.readings))
         result_.equal_grid = point;
     }
     return best;
+  }
+
+  PlanningModel::Candidates readings_of(const Grid& grid, const std::vector<std::size_t>& conditions) const {
+    std::vector<PosesAt> at;
+    for (const std::size_t condition : conditions) at.push_back({grid.poses, condition});
+    return model_.readings_at(at, grid.sight);
+  }
+
+  /// Rows at the times and states at which readings are really taken. False: the course is over before they are.
+  bool take(PlanningModel::Candidates& readings) const {
+    const PlannedStates& states = model_.states();
+    if (!states.any() && !has_drift(model_.study())) return true;
+    const auto ordered = scheduled_readings(model_.study(), states, readings.readings);
+    if (states.has_course()) {
+      const std::vector<double> times = reading_times(model_.study(), ordered, states);
+      if (times.empty() || times.back() > states.used_at_time().back()) return false;
+    }
+    readings.rows = rows_as_taken(model_, ordered);
+    return true;
   }
 
   GridPoint evaluate(const Grid& grid, const PlanningModel::Candidates& readings, double with_prior) const {
@@ -267,46 +294,81 @@ class GridSearch {
   const Eigen::MatrixXd& predictions_;
   StudyPlan& result_;
   std::stop_token stop_;
+  std::vector<std::size_t> conditions_;
   const std::vector<AxisRange>& ranges_;
   double visible_ = 1;
 };
 
+constexpr std::size_t kMostSingle = 5;
+
+/// Of all conditions, those at which every state is near its lowest and its highest value.
+std::pair<std::size_t, std::size_t> ends_of_states(const PlannedStates& states) {
+  const std::vector<PlanningCondition>& all = states.conditions();
+  const std::size_t count = all.front().states.size();
+  std::vector<double> low(count, std::numeric_limits<double>::infinity()), high(count, -low.front());
+  for (const PlanningCondition& one : all) {
+    for (std::size_t j = 0; j < count && one.possible; ++j) {
+      if (std::isnan(one.states[j])) continue;
+      low[j] = std::min(low[j], one.states[j]);
+      high[j] = std::max(high[j], one.states[j]);
+    }
+  }
+  std::size_t lowest = 0, highest = 0;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (!all[c].possible) continue;
+    double sum = 0;
+    for (std::size_t j = 0; j < count; ++j) {
+      if (high[j] > low[j] && !std::isnan(all[c].states[j])) sum += (all[c].states[j] - low[j]) / (high[j] - low[j]);
+    }
+    if (sum < least) {
+      least = sum;
+      lowest = c;
+    }
+    if (sum > most) {
+      most = sum;
+      highest = c;
+    }
+  }
+  return {lowest, highest};
+}
+
+/// Some conditions, evenly over all at which readings can be taken.
+std::vector<std::size_t> spread_conditions(const PlannedStates& states) {
+  std::vector<std::size_t> all;
+  for (std::size_t c = 0; c < states.conditions().size(); ++c) {
+    if (states.conditions()[c].possible) all.push_back(c);
+  }
+  thin(all, kMostSingle);
+  return all;
+}
+
 }  // namespace
-
-double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidates::Rows& rows,
-                              const Eigen::MatrixXd& predictions) {
-  Eigen::MatrixXd information = model.weak_prior() + model.known().transpose() * model.known();
-  information.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-  // Scaled, for lengths and angles differ by orders of magnitude.
-  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();  // the lower half counts
-  const Cholesky factor(scaled);
-  const Eigen::MatrixXd half = factor.half_solve(scale.asDiagonal() * predictions.transpose());
-  return std::sqrt(half.squaredNorm() / (static_cast<double>(predictions.rows()) / 3));
-}
-
-std::string open_errors(const PlanningModel& model, const PlanningSpace& space, const PlanningCandidates::Rows& rows,
-                        std::size_t rank) {
-  const Index v = static_cast<Index>(space.dimension()), open = v - static_cast<Index>(rank);
-  const RightSingular svd = right_singular(Eigen::MatrixXd(rows * space.estimates_from_seen()));
-  const Eigen::MatrixXd prior = model.weak_prior() + model.known().transpose() * model.known();
-  const Eigen::VectorXd weights = prior.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd directions = weights.asDiagonal() * space.estimates_from_seen() * svd.vectors.rightCols(open);
-  const Eigen::VectorXd share = directions.colwise().normalized().rowwise().squaredNorm();
-  std::vector<std::size_t> order(static_cast<std::size_t>(share.size()));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return share[static_cast<Index>(a)] > share[static_cast<Index>(b)];
-  });
-  std::string text;
-  for (std::size_t k = 0; k < std::min(kMostNamed, order.size()); ++k)
-    text += (k > 0 ? ", " : "") + model.parameters()[order[k]].name;
-  return text;
-}
 
 void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
                         StudyPlan& result, const std::stop_token& stop) {
   GridSearch(model, space, predictions, result, stop).run();
+}
+
+void compare_with_plain_states(const PlanningModel& model, const PlanningSpace& space,
+                               const Eigen::MatrixXd& predictions, StudyPlan& result, const std::stop_token& stop) {
+  const auto grids_at = [&](const std::vector<std::size_t>& conditions) {
+    return GridSearch(model, space, predictions, result, stop, conditions).of_same_number();
+  };
+  const auto [lowest, highest] = ends_of_states(model.states());
+  if (lowest != highest) {
+    const std::vector<std::size_t> both = {std::min(lowest, highest), std::max(lowest, highest)};
+    result.plain_states.push_back({PlainStates::Kind::ends, both, grids_at(both)});
+  }
+  PlainStates one{PlainStates::Kind::one, {}, {}};
+  for (const std::size_t condition : spread_conditions(model.states())) {
+    const GridsOfANumber grids = grids_at({condition});
+    if (!grids.any) continue;
+    if (one.grids.any && !(grids.any->value.with_prior < one.grids.any->value.with_prior)) continue;
+    one.conditions = {condition};
+    one.grids = grids;
+  }
+  if (one.grids.any) result.plain_states.push_back(std::move(one));
 }
 
 }  // namespace abbe

@@ -21,6 +21,8 @@
 #include "abbe/study/identified_expansions.h"
 #include "abbe/study/planned_readings.h"
 #include "abbe/study/planning.h"
+#include "abbe/study/planning_beside_drifts.h"
+#include "abbe/study/setup_drifts.h"
 
 namespace abbe {
 namespace {
@@ -91,7 +93,8 @@ std::array<std::vector<double>, 3> tool_points(const Machine& machine, const Pos
 
 }  // namespace
 
-PlanningModel::PlanningModel(const Study& study, const ErrorSet* errors) : study_(study) {
+PlanningModel::PlanningModel(const Study& study, const ErrorSet* errors, PlannedDrifts drifts)
+    : study_(study), drifts_(std::move(drifts)) {
   if (!study.planning) throw InputError({.field = "plan"}, "there is nothing to plan", "a table [plan]");
   if (!study.identification)
     throw InputError({.field = "identify"}, "it is not said what is to be identified", "a table [identify]");
@@ -112,9 +115,7 @@ PlanningModel::PlanningModel(const Study& study, const ErrorSet* errors) : study
   if (sights_.empty() && given_.empty()) {
     throw InputError({.field = "setup"}, "the reflectors are missing", "[[setup.reflector]]");
   }
-  std::vector<InstrumentReadings> none;
-  for (const auto& device : devices_) none.push_back(empty_readings(study.machine, *device));
-  const Problem empty = problem(none);
+  const Problem empty = problem(no_readings());
   parameters_ = estimated_parameters(empty);
   find_states();
   Problem with_priors = empty;
@@ -183,6 +184,15 @@ void PlanningModel::add_given(std::size_t setup) {
   given_.emplace_back(setup, std::move(all));
 }
 
+std::vector<InstrumentReadings> PlanningModel::no_readings() const {
+  std::vector<InstrumentReadings> none;
+  for (std::size_t s = 0; s < devices_.size(); ++s) {
+    none.push_back(empty_readings(study_.machine, *devices_[s]));
+    if (!drifts_.empty()) none.back().drift = drifts_[s];
+  }
+  return none;
+}
+
 Problem PlanningModel::problem(const std::vector<InstrumentReadings>& readings) const {
   std::vector<std::shared_ptr<Observations>> observations;
   for (std::size_t s = 0; s < devices_.size(); ++s) {
@@ -192,6 +202,9 @@ Problem PlanningModel::problem(const std::vector<InstrumentReadings>& readings) 
   if (!study_.identification->tool_offset)
     result.machine_parameters.resize(result.machine_parameters.size() - 3);  // they come last
   keep_expansion_estimates(*study_.identification, result);
+  for (std::size_t s = 0; s < readings.size(); ++s) {
+    if (readings[s].drift != nullptr) add_walk_priors(*study_.setups[s].drift, *readings[s].drift, s, result);
+  }
   return result;
 }
 
@@ -248,11 +261,14 @@ void PlanningModel::see(std::size_t setup, const InstrumentReadings& plan, std::
   readings[setup].append(seen.readings);
 }
 
-void PlanningModel::see_poses(const PoseList& poses, const std::vector<std::size_t>& sight,
+void PlanningModel::see_poses(const PosesAt& at, const std::vector<std::size_t>& sight,
                               std::vector<InstrumentReadings>& readings, Candidates& result) const {
+  const PoseList& poses = at.poses;
+  const auto takes_part = [&at](std::size_t setup) { return at.setup == PosesAt::kEverySetup || at.setup == setup; };
   const std::vector<bool> out = forbidden(poses);
   result.forbidden += static_cast<std::size_t>(std::count(out.begin(), out.end(), true));
   for (std::size_t i = 0; i < sights_.size(); ++i) {
+    if (!takes_part(sights_[i].setup)) continue;
     PoseList own;
     own.axis.resize(poses.axis.size());
     for (std::size_t k = 0; k < poses.count(); ++k) {
@@ -263,6 +279,7 @@ void PlanningModel::see_poses(const PoseList& poses, const std::vector<std::size
     see(sights_[i].setup, sight_plan(sights_[i], own, result), readings, result);
   }
   for (const auto& [setup, plan] : given_) {
+    if (!takes_part(setup)) continue;
     const std::vector<bool> blocked = forbidden(plan.poses);
     std::vector<std::size_t> allowed;
     for (std::size_t k = 0; k < plan.count(); ++k) {
@@ -281,12 +298,15 @@ PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
 PlanningModel::Candidates PlanningModel::readings_at(const std::vector<PosesAt>& tried,
                                                      const std::vector<std::size_t>& sight) const {
   Candidates result;
-  std::vector<InstrumentReadings> readings;
-  for (const auto& device : devices_) readings.push_back(empty_readings(study_.machine, *device));
-  std::vector<std::vector<std::size_t>> condition(devices_.size());
+  std::vector<InstrumentReadings> readings = no_readings();
+  std::vector<std::vector<std::size_t>> condition(devices_.size()), part(devices_.size());
   for (const PosesAt& at : tried) {
-    see_poses(at.poses, sight, readings, result);
-    for (std::size_t s = 0; s < readings.size(); ++s) condition[s].resize(readings[s].count(), at.condition);
+    see_poses(at, sight, readings, result);
+    for (std::size_t s = 0; s < readings.size(); ++s) {
+      condition[s].resize(readings[s].count(), at.condition);
+      part[s].resize(readings[s].count(), at.part);
+      if (readings[s].drift != nullptr) readings[s].time_s.resize(readings[s].count(), at.time_s);
+    }
   }
   for (std::size_t s = 0; s < readings.size(); ++s) {
     std::vector<std::vector<double>> states;
@@ -299,19 +319,22 @@ PlanningModel::Candidates PlanningModel::readings_at(const std::vector<PosesAt>&
       std::vector<double> inputs;
       for (const std::vector<double>& column : readings[s].inputs) inputs.push_back(column[k]);
       result.readings.push_back(
-          {readings[s].poses.pose(k), s, readings[s].item[k], std::move(inputs), condition[s][k]});
+          {readings[s].poses.pose(k), s, readings[s].item[k], std::move(inputs), condition[s][k], part[s][k]});
     }
   result.of_setup = std::move(readings);
   return result;
 }
 
 PlanningCandidates PlanningModel::rows_of(const std::vector<CandidateReading>& readings,
-                                          const std::vector<std::vector<double>>& states) const {
+                                          const std::vector<std::vector<double>>& states,
+                                          const std::vector<double>& time_s) const {
   std::vector<InstrumentReadings> seen;
   Candidates counted;
   for (std::size_t s = 0; s < devices_.size(); ++s) {
     seen.push_back(empty_readings(study_.machine, *devices_[s]));
     std::vector<std::vector<double>> own;
+    std::vector<double> times;
+    std::size_t count = 0;
     // One item at a time: see() takes all readings of a tracker as those of one sight.
     for (std::size_t item = 0; item < devices_[s]->items().size(); ++item) {
       InstrumentReadings plan = empty_readings(study_.machine, *devices_[s]);
@@ -319,14 +342,21 @@ PlanningCandidates PlanningModel::rows_of(const std::vector<CandidateReading>& r
       for (std::size_t k = 0; k < readings.size(); ++k) {
         if (readings[k].setup != s || readings[k].item != item) continue;
         plan.append(readings[k].pose, item, readings[k].inputs);
-        own.push_back(states.at(k));
+        if (!states.empty()) own.push_back(states.at(k));
+        if (!time_s.empty()) times.push_back(time_s.at(k));
+        ++count;
       }
       see(s, plan, seen, counted);
-      if (seen[s].count() != own.size()) throw std::logic_error("planning: a candidate cannot be read any more");
+      if (seen[s].count() != count) throw std::logic_error("planning: a candidate cannot be read any more");
     }
     give_states(own, seen[s].poses);
+    const std::optional<DriftPlan>& drift = study_.setups[s].drift;
+    if (times.empty() || !drift || !drift->is_identified()) continue;
+    seen[s].time_s = std::move(times);
+    seen[s].drift = drift_over(*drift, *devices_[s], times_by_station(*devices_[s], seen[s]));
   }
-  return candidate_rows(problem(seen));
+  const Problem taken = problem(seen);
+  return time_s.empty() ? candidate_rows(taken) : beside_drifts(taken, candidate_rows(taken), seen);
 }
 
 std::vector<bool> PlanningModel::forbidden(const PoseList& poses) const {

@@ -92,6 +92,12 @@ double travel_time(const PlanningStudy& plan, const std::vector<double>& from, c
 std::vector<CandidateReading> scheduled_readings(const Study& study, const PlannedStates& states,
                                                  const std::vector<CandidateReading>& readings) {
   std::vector<CandidateReading> result;
+  std::map<std::size_t, std::vector<CandidateReading>> parts;
+  for (const CandidateReading& reading : readings) parts[reading.part].push_back(reading);
+  if (parts.size() > 1) {
+    for (const auto& [part, own] : parts) append_in_order(study, own, result);
+    return result;
+  }
   std::set<std::size_t> conditions;
   for (const CandidateReading& reading : readings) conditions.insert(reading.condition);
   std::vector<std::size_t> order = states.in_order({conditions.begin(), conditions.end()});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <set>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/text/input_error.h"
@@ -19,6 +20,8 @@ constexpr std::size_t kPosesPerState = 8;      // and not fewer than these
 constexpr std::size_t kPosesOfCondition = 40;  // under each condition
 constexpr double kWholeTurn = 2 * std::numbers::pi * 0.99;
 constexpr double kAtAnEnd = 0.4;
+constexpr std::size_t kPosesAround = 6;
+constexpr double kShortestReading_s = 1e-3;
 
 /// Random poses over the ranges. The best places of polynomials are the ends and the middle of a range, which random
 /// positions of five axes never meet together: in every second pose each axis with two ends stands at one of these.
@@ -53,13 +56,10 @@ ErrorSet measurable_errors(const Study& study, const PlanningModel::Candidates& 
 
 /// Candidates of the plan, shared out among the conditions.
 std::vector<PosesAt> poses_to_try(const Study& study, const std::vector<std::size_t>& conditions, std::size_t count) {
-  const PlanningStudy& plan = *study.planning;
   std::vector<PosesAt> tried;
   const std::size_t each = conditions.size() == 1 ? count : std::max(kPosesOfCondition, count / conditions.size());
   for (const std::size_t condition : conditions) {
-    tried.push_back({plan.grid ? grid_plan(study.machine, plan.axes)
-                               : candidate_poses(study.machine, plan, each, study.seed + kSeedOfCondition * condition),
-                     condition});
+    tried.push_back({poses_under(study, condition, each), condition});
   }
   return tried;
 }
@@ -76,6 +76,53 @@ PoseList poses_of_use(const Study& study, const PlannedStates& states, const std
 }
 
 }  // namespace
+
+PoseList poses_under(const Study& study, std::size_t condition, std::size_t count) {
+  const PlanningStudy& plan = *study.planning;
+  if (plan.grid) return grid_plan(study.machine, plan.axes);
+  return candidate_poses(study.machine, plan, count, study.seed + kSeedOfCondition * condition);
+}
+
+PoseList poses_around(const PlanningStudy& plan, const std::vector<CandidateReading>& readings, std::size_t condition,
+                      std::uint64_t seed) {
+  PoseList poses;
+  std::set<std::vector<double>> known;
+  for (const CandidateReading& reading : readings)
+    if (reading.condition == condition && known.insert(reading.pose).second) poses.append(reading.pose);
+  const std::size_t given = poses.count();
+  for (std::size_t k = 0; k < given; ++k)
+    for (std::size_t n = 0; n < kPosesAround; ++n) {
+      RandomStream random(seed, k * kPosesAround + n);
+      std::vector<double> pose = poses.pose(k);
+      for (std::size_t change = 0; change < 1 + n % 2; ++change) {
+        const std::size_t i =
+            std::min(pose.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(pose.size())));
+        const AxisRange& range = plan.axes[i];
+        const double share = random.uniform(), anywhere = random.uniform(range.from, range.to);
+        pose[i] = share < 0.25   ? range.from
+                  : share < 0.5  ? range.to
+                  : share < 0.65 ? (range.from + range.to) / 2
+                                 : anywhere;
+      }
+      if (known.insert(pose).second) poses.append(pose);
+    }
+  return poses;
+}
+
+bool may_stand_anywhere(const PlanningModel& model) {
+  const PlanningStudy& plan = *model.study().planning;
+  return !plan.grid && model.sights_stand_anywhere() &&
+         std::none_of(plan.axes.begin(), plan.axes.end(), [](const AxisRange& range) { return range.step > 0; });
+}
+
+void add_reading_costs(const Study& study, PlanningModel::Candidates& candidates) {
+  const PlanningStudy& plan = *study.planning;
+  if (plan.time <= 0 || plan.setups.empty()) return;
+  for (const CandidateReading& reading : candidates.readings) {
+    const std::string& setup = study.setups[reading.setup].name;
+    candidates.rows.cost_s.push_back(std::max(kShortestReading_s, plan.settle_of(setup) + plan.reading_of(setup)));
+  }
+}
 
 PlanningSetting planning_setting(const Study& study, const std::vector<std::size_t>& conditions, std::size_t count) {
   PlanningSetting setting;

@@ -192,7 +192,22 @@ TEST(PlanOverStates, TakesTheStatesThatTellTheErrorsApart) {
   const nlohmann::ordered_json json = plan_json(study, plan);
   EXPECT_TRUE(json["states"]["determined"].get<bool>());
   EXPECT_EQ(json["states"]["numbers"].size(), plan.condition_curve.size());
-  EXPECT_EQ(plan_page_data(study, plan)["tables"].size(), 6U);
+  EXPECT_EQ(plan_page_data(study, plan)["tables"].size(), 7U);
+
+  ASSERT_EQ(plan.plain_states.size(), 2U);
+  const PlainStates &ends = plan.plain_states[0], &single = plan.plain_states[1];
+  EXPECT_EQ(ends.conditions, (std::vector<std::size_t>{0, 5}));
+  // Hall and motor act on different errors, so that the ends tell both, though not as well.
+  ASSERT_TRUE(ends.grids.determined && ends.grids.any && single.grids.any);
+  EXPECT_GT(ends.grids.determined->value.uncertainty, plan.uncertainty);
+  EXPECT_FALSE(single.grids.determined);
+  EXPECT_GT(single.grids.any->open, 0U);
+  EXPECT_GE(ends.grids.any->value.readings, 90U);
+  EXPECT_GT(ends.grids.any->value.with_prior, plan.with_prior);
+  EXPECT_GT(single.grids.any->value.with_prior, 2 * plan.with_prior);
+  EXPECT_THAT(text, HasSubstr("a grid at the lowest and highest states (hall_degC = 18"));
+  EXPECT_GT(json["states"]["against"][0]["gain"].get<double>(), 1);
+  EXPECT_GT(json["states"]["against"][1]["gain_with_prior"].get<double>(), 2);
 }
 
 TEST(PlanOverStates, SaysWhatOneTemperatureLeavesOpen) {

@@ -169,6 +169,7 @@ void identification_assumptions(const Study& study, const StudyResult& result, s
     list.push_back(fmt::format("{} values enter as prior knowledge with their stated standard uncertainty.",
                                result.model.problem.priors.size()));
   }
+  if (result.sensors && result.sensors->done) list.push_back(ranked_sensors_sentence(*result.sensors));
   if (result.order_selection && result.order_selection->done) {
     list.emplace_back(
         "Orders are chosen by the residuals at readings left out of the fit; the uncertainties hold for the "

@@ -1,7 +1,10 @@
 #include "abbe/study/sensor_selection.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "abbe/geometry/decompositions.h"
@@ -175,6 +178,26 @@ std::vector<SensorLikeness> like_sensors(const Eigen::MatrixXd& course) {
     if (nearest.left < kSameCourse * whole) result.push_back(nearest);
   }
   return result;
+}
+
+std::string likeness_words(const std::vector<std::string>& courses, const SensorLikeness& one) {
+  const std::string& name = courses[one.sensor];
+  if (one.still()) return fmt::format("{} does not change: what depends on it is not told apart from the rest", name);
+  const std::string other = one.other == SensorLikeness::kAllOthers ? "the others together" : courses[one.other];
+  return fmt::format("{} follows from {}: {:.3g} of its deviation of {:.3g} (root mean square) remain", name, other,
+                     one.left, one.whole);
+}
+
+nlohmann::ordered_json likeness_json(const std::vector<std::string>& courses, const SensorLikeness& one) {
+  nlohmann::ordered_json entry = {{"state", courses[one.sensor]}};
+  if (one.still()) {
+    entry["does_not_change"] = true;
+    return entry;
+  }
+  entry["follows_from"] = one.other == SensorLikeness::kAllOthers ? "others" : courses[one.other];
+  entry["deviation"] = one.whole;
+  entry["remains"] = one.left;
+  return entry;
 }
 
 }  // namespace abbe

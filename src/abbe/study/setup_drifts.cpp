@@ -11,18 +11,6 @@
 namespace abbe {
 namespace {
 
-/// Times at which readings were taken from each of the stations, each once.
-std::vector<std::vector<double>> times_by_station(const Instrument& device, const std::vector<std::uint16_t>& item,
-                                                  const std::vector<double>& time_s) {
-  std::vector<std::vector<double>> times(std::max<std::size_t>(1, device.station_names().size()));
-  for (std::size_t k = 0; k < time_s.size(); ++k) times[device.station_of(item[k])].push_back(time_s[k]);
-  for (std::vector<double>& of_one : times) {
-    std::sort(of_one.begin(), of_one.end());
-    of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
-  }
-  return times;
-}
-
 DriftingPlace place_of(const DriftPlan& plan, const Instrument& device, std::size_t station) {
   const std::vector<std::string> stations = device.station_names();
   DriftingPlace place;
@@ -90,15 +78,34 @@ std::shared_ptr<const SetupDrift> assumed_drift(const DriftPlan& plan, const Ins
   if (readings.time_s.empty()) {
     throw InputError({.file = place, .field = "drift"}, "the readings have no times", "a column time_s");
   }
-  const std::vector<std::vector<double>> times = times_by_station(device, readings.item, readings.time_s);
+  const std::vector<std::vector<double>> times = times_by_station(device, readings);
+  for (std::size_t s = 0; s < times.size(); ++s) {
+    if (times[s].size() != 1) continue;
+    throw InputError({.file = place, .field = "drift"},
+                     fmt::format("all readings of {} have the same time", place_of(plan, device, s).name),
+                     "readings over a span of time");
+  }
+  return drift_over(plan, device, times);
+}
+
+std::vector<std::vector<double>> times_by_station(const Instrument& device, const InstrumentReadings& readings) {
+  std::vector<std::vector<double>> times(std::max<std::size_t>(1, device.station_names().size()));
+  for (std::size_t k = 0; k < readings.time_s.size(); ++k) {
+    times[device.station_of(readings.item[k])].push_back(readings.time_s[k]);
+  }
+  for (std::vector<double>& of_one : times) {
+    std::sort(of_one.begin(), of_one.end());
+    of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
+  }
+  return times;
+}
+
+std::shared_ptr<const SetupDrift> drift_over(const DriftPlan& plan, const Instrument& device,
+                                             const std::vector<std::vector<double>>& times) {
   auto drift = std::make_shared<SetupDrift>();
   for (std::size_t s = 0; s < times.size(); ++s) {
     DriftingPlace& one = drift->places.emplace_back(place_of(plan, device, s));
-    if (times[s].empty()) continue;
-    if (times[s].size() < 2) {
-      throw InputError({.file = place, .field = "drift"},
-                       fmt::format("all readings of {} have the same time", one.name), "readings over a span of time");
-    }
+    if (times[s].size() < 2) continue;
     one.components = plan.components;
     one.start_s = times[s].front();
     one.end_s = times[s].back();
@@ -139,15 +146,17 @@ std::shared_ptr<const SetupDrift> true_drift(const DriftPlan& plan, const Instru
 }
 
 void add_walk_priors(const CampaignSetup& setup, std::size_t index, Problem& problem) {
-  const SetupDrift* drift = setup.readings.drift.get();
-  if (drift == nullptr) return;
-  const std::size_t before = problem.observations[index].observations->unknowns().size() - drift->unknown_count();
-  for_each_walk(*drift, [&](const DriftingPlace& place, int component, std::size_t first) {
+  if (setup.readings.drift != nullptr) add_walk_priors(*setup.drift, *setup.readings.drift, index, problem);
+}
+
+void add_walk_priors(const DriftPlan& plan, const SetupDrift& drift, std::size_t index, Problem& problem) {
+  const std::size_t before = problem.observations[index].observations->unknowns().size() - drift.unknown_count();
+  for_each_walk(drift, [&](const DriftingPlace& place, int component, std::size_t first) {
     const std::size_t n = place.knots_s.size() - 1;
     JointPrior prior;
     for (std::size_t i = 0; i < n; ++i) prior.parameters.push_back({index, before + first + i});
     prior.value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
-    prior.information = walk_information(place.knots_s) / walk_variance(*setup.drift, component);
+    prior.information = walk_information(place.knots_s) / walk_variance(plan, component);
     prior.residual_count = static_cast<double>(n);
     problem.joint_priors.push_back(std::move(prior));
   });

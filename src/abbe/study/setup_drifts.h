@@ -21,6 +21,14 @@ namespace abbe {
 std::shared_ptr<const SetupDrift> assumed_drift(const DriftPlan& plan, const Instrument& device,
                                                 const InstrumentReadings& readings, const std::string& place);
 
+/// Times at which readings were taken from each of the stations (one, where an instrument has none): increasing, each
+/// once.
+std::vector<std::vector<double>> times_by_station(const Instrument& device, const InstrumentReadings& readings);
+
+/// The same drift over given times of each station; a station with fewer than two of them stands still.
+std::shared_ptr<const SetupDrift> drift_over(const DriftPlan& plan, const Instrument& device,
+                                             const std::vector<std::vector<double>>& times);
+
 /// What a simulated set-up really does at these times: the stated polynomial and a walk that is drawn.
 std::shared_ptr<const SetupDrift> true_drift(const DriftPlan& plan, const Instrument& truth,
                                              const std::vector<double>& time_s, RandomStream& random);
@@ -28,6 +36,7 @@ std::shared_ptr<const SetupDrift> true_drift(const DriftPlan& plan, const Instru
 /// The random walks of a set-up as joint priors of its unknowns, appended: one for every place and component.
 /// @param setup  its index among the observations of the problem
 void add_walk_priors(const CampaignSetup& setup, std::size_t index, Problem& problem);
+void add_walk_priors(const DriftPlan& plan, const SetupDrift& drift, std::size_t index, Problem& problem);
 
 /// Walks of all set-ups whose intensity is to be estimated: shifts of a place together, and its turns.
 std::vector<EstimatedWalk> walks_to_estimate(const Campaign& campaign, const Problem& problem);

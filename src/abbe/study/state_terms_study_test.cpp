@@ -189,6 +189,41 @@ TEST(StateTerms, TheOnesThatDriveErrorsAreTaken) {
   EXPECT_LE(false_terms, 4U);
 }
 
+/// Effects of a few standard uncertainties: docs/identification.md has the counts for other sizes.
+TEST(StateTerms, AnEffectOfSevenStandardUncertaintiesIsFound) {
+  const std::filesystem::path folder = warm_folder("state_terms_weak");
+  std::string truth = kWarmErrors;
+  truth.replace(truth.find("value_urad = 7"), 14, "value_urad = 4");
+  std::ofstream(folder / "truth.errors.toml") << truth;
+  const std::string right =
+      "[[identify.motion]]\nerrors = \"EXX\"\nstate = \"ambient\"\nbasis = \"legendre\"\norder = 1\n"
+      "[[identify.location]]\nerrors = [\"EC0Y\"]\nstate = \"column\"\n";
+  StudyResult known;
+  const Study with_right_terms = warm(folder, warm_study("held_out_fraction = 0\n" + right));
+  known.campaign = gather_readings(with_right_terms);
+  prepare_study(with_right_terms, known);
+  const Identification found = identify(known.model.problem, identify_options(with_right_terms));
+  double uncertainty = 0;
+  for (std::size_t p = 0; p < found.parameters.size(); ++p) {
+    if (found.parameters[p].name == "EC0Y*column")
+      uncertainty = found.standard_uncertainties[static_cast<Eigen::Index>(p)];
+  }
+  EXPECT_NEAR(4e-6 / uncertainty, 6.9, 0.1);
+  Study study = warm(folder, warm_study(std::string("held_out_fraction = 0\n") + kCandidates));
+  int taken = 0;
+  for (std::uint64_t draw = 0; draw < 10; ++draw) {
+    study.seed = 40 + draw;
+    StudyResult result;
+    result.campaign = gather_readings(study);
+    prepare_study(study, result);
+    for (const TakenTerm& one : result.terms->selection.taken) {
+      const std::string& name = result.terms->candidates[one.candidate];
+      taken += name == "EC0Y*column" || name == "EXY*column" ? 1 : 0;
+    }
+  }
+  EXPECT_GE(taken, 9);
+}
+
 TEST(StateTerms, AreReportedAndTheOthersAreNoErrorsOfTheMachine) {
   const std::filesystem::path folder = warm_folder("state_terms_report");
   const Study study = warm(folder, warm_study(std::string("time_blocks = 16\ntime_gap_min = 6\n") + kCandidates), 41);

@@ -60,6 +60,9 @@ void append_length(const Observations& observations, std::size_t reading, std::v
 void prepare_study(const Study& study, StudyResult& result) {
   find_start_values(study.machine, result.campaign);
   result.model = build_model(study, result.campaign);
+  if (study.identification->rank_sensors && result.model.impossible.empty()) {
+    result.sensors = rank_sensors(study, result.campaign, result.model.problem, identify_options(study));
+  }
   if (!study.identification->select_terms || !result.model.impossible.empty()) return;
   result.terms = choose_terms(study, result.campaign, result.model.problem, identify_options(study));
   result.model = build_model(with_chosen_terms(study, result), result.campaign);

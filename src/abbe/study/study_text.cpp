@@ -109,6 +109,7 @@ std::string study_text(const Study& study, const StudyResult& result, const char
                         figures["largest_uncertainty_ratio"].get<double>());
   }
   if (result.terms) text += chosen_terms_text(*result.terms);
+  if (result.sensors) text += ranked_sensors_text(*result.sensors);
   if (result.order_selection && result.order_selection->done) {
     text += "  orders chosen at held-out poses:";
     for (std::size_t g = 0; g < result.order_selection->orders.size(); ++g) {

@@ -181,6 +181,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       json["identified"] = found_values_json(found_values(study, result));
       if (const nlohmann::ordered_json drift = drift_json(result); !drift["places"].empty()) json["drift"] = drift;
       if (result.terms) json["terms_with_states"] = chosen_terms_json(*result.terms);
+      if (result.sensors) json["sensors"] = ranked_sensors_json(*result.sensors);
       const std::vector<CoveredState> covered = covered_states(study, result);
       for (const CoveredState& state : covered) json["covered_states"][state.column] = {state.from, state.to};
       if (!covered.empty()) json["covered_time_h"] = covered_time_s(result) / 3600;

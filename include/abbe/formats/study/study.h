@@ -179,6 +179,7 @@ struct IdentificationPlan {
   double coverage_margin_percent = 2;
   bool select_order = false;     ///< some motion without a state has smallest_order < basis.order
   bool select_terms = false;     ///< some term with a state is optional, or its order is to be selected
+  bool rank_sensors = false;     ///< of the states, by held-out blocks of time
   std::size_t time_blocks = 20;  ///< held out one after the other for that choice
   double ageing_length = 0;      ///< mm/sqrt(s), how errors wander after their measurement; for the errors file
   double ageing_angle = 0;       ///< rad/sqrt(s)

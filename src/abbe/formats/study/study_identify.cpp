@@ -185,12 +185,31 @@ void read_prior(TomlTable& table, std::vector<ParameterPrior>& priors) {
   }
 }
 
-/// How terms with states are chosen.
-void read_time_blocks(TomlTable& table, IdentificationPlan& plan) {
+/// Whether a state is measured, or computed from one that is.
+bool is_measured(const Machine& machine, std::size_t state) {
+  if (state == kNoState) return false;
+  const MachineState& one = machine.states[state];
+  return is_input(one.kind) ||
+         (one.kind == StateKind::product && (is_measured(machine, one.first) || is_measured(machine, one.second)));
+}
+
+bool has_sensor(const IdentificationPlan& plan, const Machine& machine) {
+  const auto measured = [&machine](const auto& term) { return is_measured(machine, term.state); };
+  return std::any_of(plan.motions.begin(), plan.motions.end(), measured) ||
+         std::any_of(plan.locations.begin(), plan.locations.end(), measured);
+}
+
+/// How terms with states are chosen, and sensors ranked.
+void read_time_blocks(TomlTable& table, const Machine& machine, IdentificationPlan& plan) {
   const char* const expected = "optional = true or orders in a table with a state";
   const char* const problem = "is given, and no term with a state is chosen";
-  if (!plan.select_terms && table.has("time_blocks")) table.fail("time_blocks", problem, expected);
-  if (!plan.select_terms && table.has("time_gap", Quantity::time)) {
+  plan.rank_sensors = table.boolean_or("rank_sensors", false);
+  if (plan.rank_sensors && !has_sensor(plan, machine)) {
+    table.fail("rank_sensors", "is given, and no error depends on a measured state", "terms with a `state`");
+  }
+  const bool divides = plan.select_terms || plan.rank_sensors;
+  if (!divides && table.has("time_blocks")) table.fail("time_blocks", problem, expected);
+  if (!divides && table.has("time_gap", Quantity::time)) {
     table.fail_quantity("time_gap", Quantity::time, problem, expected);
   }
   plan.time_blocks = static_cast<std::size_t>(table.integer_or("time_blocks", 20, 4, 1000));
@@ -287,7 +306,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
     location.finish();
   }
   for (const IdentifiedLocation& one : plan.locations) plan.select_terms = plan.select_terms || one.optional;
-  read_time_blocks(table, plan);
+  read_time_blocks(table, machine, plan);
   read_ageing_plan(table, plan);
   read_reversals(table, machine, plan);
   plan.tool_offset = table.boolean_or("tool_offset", false);
@@ -298,6 +317,10 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
   plan.loss = static_cast<LossKind>(table.word_or("loss", 0, {"none", "huber", "cauchy", "tukey"}));
   plan.loss_scale = table.size_or("loss_scale", Quantity::dimensionless, 0);
   read_variances(table, plan);
+  if (plan.rank_sensors && (plan.loss != LossKind::none || plan.strategy != Strategy::joint)) {
+    table.fail("rank_sensors", "is done by sums of squares of one identification",
+               "loss = \"none\" and strategy = \"joint\"");
+  }
   if (plan.select_terms && (plan.loss != LossKind::none || plan.strategy != Strategy::joint)) {
     table.fail(plan.loss != LossKind::none ? "loss" : "strategy",
                "is given together with terms that are chosen, which are compared by joint least squares",
