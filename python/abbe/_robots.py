@@ -233,6 +233,9 @@ def urdf_text(robot: Robot) -> str:
     :func:`robot_from_urdf` gives back the same kinematics.
     """
     machine = robot.machine
+    if machine.couplings:
+        axis, other, _ = machine.couplings[0]
+        raise _refuse(axis, f"is coupled to {other}, and joints of a URDF act independently", "axes without couplings")
     root = ElementTree.Element("robot", name=machine.name or "robot")
     ElementTree.SubElement(root, "link", name="base")
     before = numpy.zeros(3)

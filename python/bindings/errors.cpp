@@ -14,6 +14,7 @@
 #include "abbe/errors/random_errors.h"
 #include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/machine/machine_check.h"
 #include "bindings/arrays.h"
 #include "bindings/files.h"
@@ -118,8 +119,9 @@ void add_motion(MachineErrors& errors, const std::string& name, const MotionArgu
   Basis& basis = motion.basis;
   basis.kind = basis_kind(arguments.basis);
   const bool table = basis.kind == BasisKind::table_linear || basis.kind == BasisKind::table_monotone;
-  basis.from = axis.travel_min;
-  basis.to = axis.travel_max;
+  const PositionLimits travel = position_limits(errors.machine, axis_index);
+  basis.from = travel.from;
+  basis.to = travel.to;
   const std::vector<double> range = positions_of(axis, arguments.range_mm, arguments.range_deg, "range");
   if (!range.empty()) {
     if (range.size() != 2 || !(range[0] < range[1])) refuse("range", "is no range", "(smallest, largest) position");

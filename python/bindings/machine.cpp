@@ -7,7 +7,10 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+
+#include <tuple>
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/machine/machine_file.h"
@@ -74,6 +77,26 @@ Axis& axis_named(Machine& machine, const std::string& name) {
     throw nb::key_error(fmt::format("no axis '{}' in {}", name, machine.chain()).c_str());
   }
   return machine.axes[index];
+}
+
+using NamedCouplings = std::vector<std::tuple<std::string, std::string, double>>;
+
+NamedCouplings couplings(const Machine& machine) {
+  NamedCouplings named;
+  for (const AxisCoupling& coupling : machine.couplings) {
+    named.emplace_back(machine.axes[coupling.axis].name, machine.axes[coupling.of].name, coupling.ratio);
+  }
+  return named;
+}
+
+void set_couplings(Machine& machine, const NamedCouplings& named) {
+  std::vector<AxisCoupling> found;
+  for (const auto& [axis, of, ratio] : named) {
+    axis_named(machine, axis);
+    axis_named(machine, of);
+    found.push_back({machine.find_axis(axis), machine.find_axis(of), ratio});
+  }
+  machine.couplings = std::move(found);
 }
 
 std::vector<std::string> problems(const Machine& machine) {
@@ -179,6 +202,10 @@ void bind_machine(nb::module_& module) {
             return names;
           },
           "Names of the axes in the order of the chain.")
+      .def_prop_rw("couplings", &couplings, &set_couplings,
+                   "What positions of axes contain of the commands of others: (axis, other axis, ratio) with\n"
+                   "position = command + ratio times command of the other. Ratios are numbers between axes of one kind,\n"
+                   "else mm per rad or rad per mm. Raises KeyError for a name that is no axis.")
       .def_prop_rw(
           "tool_reference_mm", [](const Machine& machine) { return machine.tool_reference; },
           [](Machine& machine, const Triple& value) { machine.tool_reference = vector(value); },

@@ -61,6 +61,22 @@ def test_urdf_there_and_back():
         assert back.joint_names == robot.joint_names
 
 
+def test_couplings_move_other_joints():
+    robot = abbe.robot_from_dh([abbe.Joint(a_mm=300, alpha_deg=30 * k) for k in range(4)])
+    commands = [0.3, -0.4, 0.5, 0.2]
+    names = robot.machine.axis_names
+    apart = abbe.nominal_poses(robot.machine, [0.3, -0.4, 0.5 + 0.4 * 1.0, 0.2]).points_mm
+    robot.machine.couplings = [(names[2], names[1], -1.0)]
+    assert robot.machine.couplings == [(names[2], names[1], -1.0)]
+    numpy.testing.assert_allclose(abbe.nominal_poses(robot.machine, commands).points_mm, apart, atol=1e-9)
+    again = abbe.Machine.parse(robot.machine.text())
+    assert again.couplings == robot.machine.couplings
+    with pytest.raises(abbe.InputError, match="is coupled to"):
+        abbe.urdf_text(robot)
+    with pytest.raises(KeyError):
+        robot.machine.couplings = [("Q", names[1], 1.0)]
+
+
 def test_urdf_with_angles_fixed_joints_and_branches(tmp_path):
     text = """<robot name="r"><link name="base"/><link name="a"/><link name="b"/><link name="tool"/><link name="camera"/>
     <joint name="turn" type="revolute"><parent link="base"/><child link="a"/><origin xyz="0 0 0.5" rpy="0 0 1.5707963267948966"/>

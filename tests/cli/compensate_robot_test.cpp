@@ -127,10 +127,12 @@ TEST_F(CompensateRobot, TablesOfJointsBecomeMachineFiles) {
   }
   ASSERT_EQ(abbe({"import", "--dh", examples + "arm.dh.toml", "-o", "again.machine.toml"}).exit_code, ExitCode::done);
   EXPECT_EQ(folder.read("again.machine.toml"), read_text_file(examples + "arm.machine.toml"));
-  folder.write("b.dh.toml", "name = \"b\"\nconvention = \"standard\"\n[[joint]]\ncoupled_to = \"A1\"\n");
+  folder.write("b.dh.toml",
+               "name = \"b\"\nconvention = \"standard\"\n[[joint]]\n"
+               "travel_deg = [0, 90]\n[[joint]]\ntravel_deg = [0, 90]\ncoupled = { A3 = -1 }\n");
   const CommandResult coupled = abbe({"import", "--dh", "b.dh.toml", "-o", "b.machine.toml"});
   EXPECT_EQ(coupled.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(coupled.err, HasSubstr("b.dh.toml:4:1: joint[1].coupled_to: coupled joints are not supported"));
+  EXPECT_THAT(coupled.err, HasSubstr("b.dh.toml:7:13: joint[2].coupled.A3: there is no axis A3; expected one of A1"));
 }
 
 }  // namespace

@@ -53,40 +53,42 @@ enum class PoseStatus { not_run, ok, out_of_range };
 ///
 /// iso, linear: Trans(reference + s q u') E(q) Trans(-reference); rotary: Trans(centre) E(q) Rot' Trans(-centre), where
 /// the prime marks the axis line displaced by the location errors. Source: docs/conventions.md.
+/// @param position  of the axis: its command where it is not coupled
 /// @param factors  [states] (state_factors()); where they are not given, what errors with a state move is NaN
 RigidTransform actual_motion(const Machine& machine, const ErrorSet& errors, std::size_t axis, double position,
                              std::span<const double> factors = {});
 
 /// workpiece_from_tool with errors, at the functional point (tool frame parallel to the machine's with all axes at
 /// zero).
-/// @param positions  commands in chain order, [axes], mm or rad
-/// @param given      as state_factor() takes it; NaN results where errors have an input state that is not given
+/// @param commands  in chain order, [axes], mm or rad
+/// @param given     as state_factor() takes it; NaN results where errors have an input state that is not given
 RigidTransform actual_workpiece_from_tool(const Machine& machine, const ErrorSet& errors,
-                                          const std::vector<double>& positions, std::span<const double> given = {});
-RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& errors,
-                                    const std::vector<double>& positions, std::span<const double> given = {});
+                                          const std::vector<double>& commands, std::span<const double> given = {});
+RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& errors, const std::vector<double>& commands,
+                                    std::span<const double> given = {});
 RigidTransform actual_bed_from_workpiece(const Machine& machine, const ErrorSet& errors,
-                                         const std::vector<double>& positions, std::span<const double> given = {});
+                                         const std::vector<double>& commands, std::span<const double> given = {});
 
 /// Six numbers: translation of the functional point (mm), rotation vector (rad).
 using Deviation = Eigen::Matrix<double, 6, 1>;
 
 /// Deviation of the tool pose in the workpiece frame: actual minus nominal.
 ///
-/// @param positions      commands in chain order, [axes], mm or rad
+/// @param commands       in chain order, [axes], mm or rad
 /// @param deviation      translation of the functional point (mm), then rotation vector of R_actual R_nominal^T (rad)
 /// @param by_parameters  if not null: d(deviation)/d(ErrorSet::parameters()), becomes [6, parameter_count]; its
 /// rotation
 ///                       rows are the instantaneous rotation (the twist), equal to the derivative of the rotation
 ///                       vector to first order in the deviation
-/// @param by_positions   if not null: twist of the actual pose per axis command, becomes [6, axes]; states that depend
+/// @param by_commands    if not null: twist of the actual pose per axis command, becomes [6, axes]; states that depend
 ///                       on the commands are differentiated too
 /// @param given          as state_factor() takes it
-/// @returns out_of_range if a position lies outside the range of an error motion or an input state of the errors is not
+/// @returns out_of_range if a position of an axis lies outside the range of an error motion or an input state of the
+/// errors is not
 ///          given; the deviation is then an extrapolation, or NaN, and must not be used as a result
 /// Source: ISO 230-1:2012, 3.4; composition order in docs/conventions.md.
-PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const std::vector<double>& positions,
+PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const std::vector<double>& commands,
                           Deviation& deviation, Eigen::MatrixXd* by_parameters = nullptr,
-                          Eigen::MatrixXd* by_positions = nullptr, std::span<const double> given = {});
+                          Eigen::MatrixXd* by_commands = nullptr, std::span<const double> given = {});
 
 }  // namespace abbe

@@ -94,6 +94,9 @@ struct ErrorSet {
   bool covers(std::size_t axis, double position) const;
 };
 
+/// ErrorSet::covers() of all axes, at the positions that they have at commands in chain order.
+bool covers_commands(const Machine& machine, const ErrorSet& errors, std::span<const double> commands);
+
 /// "EXX", "EAC2": E + component + axis name; "EXX*ambient" with a state.
 std::string error_motion_name(const Machine& machine, std::size_t axis, Component component,
                               std::size_t state = kNoState);

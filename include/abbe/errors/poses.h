@@ -32,6 +32,9 @@ struct PoseList {
   }
 };
 
+/// Positions of an axis at all poses of a list: its commands where it is not coupled.
+std::vector<double> positions_of_axis(const Machine& machine, const PoseList& poses, std::size_t axis);
+
 /// All combinations of given axis positions; the first axis varies slowest. Nothing but the positions is stored.
 struct PoseGrid {
   std::vector<std::vector<double>> values;  ///< [axes] positions per axis, mm or rad

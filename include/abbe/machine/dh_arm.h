@@ -15,8 +15,8 @@ enum class DhConvention {
   modified   ///< Rot_x(alpha) Trans_x(a) Rot_z(theta) Trans_z(d): joint i about z of frame i; a, alpha before it
 };
 
-/// One row of the table; mm and rad. A rotary joint turns by theta + command, a linear one moves by d + command; the
-/// command counts with its sign reversed if `reversed`.
+/// One row of the table; mm and rad. A rotary joint turns by theta + position, a linear one moves by d + position; the
+/// position counts with its sign reversed if `reversed`. It is the command, plus what DhArm::couplings add to it.
 struct DhJoint {
   std::string name;  ///< of the axis, as in a chain: "A1"
   AxisKind kind = AxisKind::rotary;
@@ -33,8 +33,9 @@ struct DhArm {
   std::string name, description;
   DhConvention convention = DhConvention::standard;
   std::vector<DhJoint> joints;
-  RigidTransform workpiece_from_base;  ///< frame 0 of the table in the workpiece frame
-  RigidTransform last_from_tool;       ///< frame of the tool in the last frame of the table
+  std::vector<AxisCoupling> couplings{};  ///< indices into `joints`
+  RigidTransform workpiece_from_base;     ///< frame 0 of the table in the workpiece frame
+  RigidTransform last_from_tool;          ///< frame of the tool in the last frame of the table
 };
 
 /// workpiece_from_tool: the product of the matrices of all rows. @param commands  [joints], mm or rad

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/machine/coupling.h"
 #include "abbe/machine/inverse_plan.h"
 #include "abbe/machine/machine.h"
 
@@ -28,6 +29,8 @@ struct InverseOptions {
   /// `reference`: first those marked Axis::setting, then those nearest the workpiece, as long as the rest can do the
   /// task. Of a jointed arm: first those marked Axis::setting, then those whose holding leaves the others the largest
   /// volume |det J| on the average over travel, and all linear axes; they are held at their command of the start.
+  /// Of coupled axes it is the position that is held, which is that at these commands; an axis that is named here needs
+  /// those that it is coupled to beside it.
   std::vector<HeldAxis> held;
   /// Commands in chain order, mm or rad: values of axes that are held by default. Empty: zero, or the end of travel
   /// nearest to it.
@@ -96,8 +99,9 @@ struct InverseResult {
 /// (five for a direction, three for a point): every branch, up to 16, in closed form where three neighbouring axes meet
 /// in a point or are parallel, else by elimination to an eigenvalue problem. Fewer axes than that: least squares, with
 /// its residual. Every solution is checked by nominal_workpiece_from_tool. No errors of the machine are considered
-/// here. Method: docs/kinematics.md. Paden (1986); Murray, Li, Sastry (1994), 3.3; Shuster and Markley (2003) for three
-/// axes; Pieper (1968), Raghavan and Roth (1993), Manocha and Canny (1994) for arms.
+/// here. Coupled axes are found by their positions; results, starts and travels are commands. Method:
+/// docs/kinematics.md. Paden (1986); Murray, Li, Sastry (1994), 3.3; Shuster and Markley (2003) for three axes; Pieper
+/// (1968), Raghavan and Roth (1993), Manocha and Canny (1994) for arms.
 class InverseKinematics {
  public:
   explicit InverseKinematics(const Machine& machine, const InverseOptions& options = {});
@@ -110,7 +114,8 @@ class InverseKinematics {
   void solve(const PoseTarget& target, const double* start, InverseResult& result) const;
   InverseResult solve(const PoseTarget& target, const std::vector<double>& start = {}) const;
 
-  /// Axes that are held for such targets, by name or by default, with their commands (of an arm: without a start).
+  /// Axes that are held for such targets, by name or by default, with their commands (of an arm: without a start; of a
+  /// coupled axis: with the axes that it is coupled to at their reference).
   std::vector<HeldAxis> held_axes(TargetKind kind) const;
 
   const Machine& machine() const { return machine_; }
@@ -119,23 +124,32 @@ class InverseKinematics {
 
  private:
   struct Candidate;
+  /// Where a search starts, [axes] each; the same array where no axis is coupled.
+  struct Start {
+    const double* command;
+    const double* position;
+  };
 
-  void solve_branches(const InversePlan& plan, const PoseTarget& target, const double* start,
+  /// Positions at the reference and the commands of held axes, [axes]; the held ones become positions too.
+  std::array<double, kMaxAxes> held_positions();
+  void solve_branches(const InversePlan& plan, const PoseTarget& target, const Start& start,
                       InverseResult& result) const;
-  void solve_polar(const InversePlan& plan, const PoseTarget& target, const double* start, Candidate candidate,
+  void solve_polar(const InversePlan& plan, const PoseTarget& target, const Start& start, Candidate candidate,
                    InverseResult& result) const;
-  void solve_linear(const InversePlan& plan, const PoseTarget& target, const double* start, Candidate candidate,
+  void solve_linear(const InversePlan& plan, const PoseTarget& target, const Start& start, Candidate candidate,
                     InverseResult& result) const;
-  void solve_arm(const InversePlan& plan, const PoseTarget& target, const double* start, InverseResult& result) const;
-  void add_turns(const PoseTarget& target, const double* start, std::uint32_t turning, std::size_t axis,
+  void solve_arm(const InversePlan& plan, const PoseTarget& target, const Start& start, InverseResult& result) const;
+  /// @param place     in order_: positions of the axes from there on become commands
+  void add_turns(const PoseTarget& target, const Start& start, std::uint32_t turning, std::size_t place,
                  InverseSolution& solution, InverseResult& result) const;
   void add_solution(const PoseTarget& target, InverseSolution solution, InverseResult& result) const;
 
   Machine machine_;
   InverseOptions options_;
   std::string problem_;
-  std::array<double, kMaxAxes> reference_{};
-  std::array<InversePlan, 3> plans_;  ///< by TargetKind
+  CouplingOrder order_;
+  std::array<double, kMaxAxes> reference_{};  ///< commands
+  std::array<InversePlan, 3> plans_;          ///< by TargetKind
 };
 
 /// One solution in words: singularity with the axis held, travel exceeded, residuals. Empty if there is nothing to say.

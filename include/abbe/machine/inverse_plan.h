@@ -16,7 +16,7 @@ enum class TargetKind {
   full_pose             ///< functional point and full orientation
 };
 
-/// An axis and the command it is kept at; mm or rad.
+/// An axis and the command it is kept at (in a plan: the position); mm or rad.
 struct HeldAxis {
   std::size_t axis = 0;
   double position = 0;
@@ -28,7 +28,7 @@ double chain_sign(const Axis& axis);
 
 /// Which axes of a machine do what for one kind of target.
 struct InversePlan {
-  std::array<bool, kMaxAxes> held{};  ///< kept at `command`
+  std::array<bool, kMaxAxes> held{};  ///< kept at `command`, which is the position of a coupled axis
   std::array<double, kMaxAxes> command{};
   std::array<std::size_t, 3> rotary{};  ///< axes found from the orientation, chain order
   std::size_t rotary_count = 0;
@@ -54,7 +54,7 @@ struct InversePlan {
 /// With an arm, `rotary`, `linear` and `polar` are what the machine could do without it.
 /// @param machine    sound (find_problems() empty)
 /// @param held       by the user's option
-/// @param reference  [axes] commands of axes held by default; mm or rad
+/// @param reference  [axes] positions of axes held by default; mm or rad
 InversePlan make_inverse_plan(const Machine& machine, TargetKind kind, std::span<const HeldAxis> held,
                               std::span<const double> reference);
 

@@ -39,6 +39,7 @@
 //   path.h, tool_path.h                 commands along a path; curves that a beam follows on a workpiece
 //   placement.h, test_piece.h           where a workpiece stands; cone frustum and S shape
 //   state.h                             what errors depend on besides commands: temperatures, loads, gravity
+//   coupling.h                          positions of axes whose commands are coupled
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -77,6 +78,18 @@ struct Axis {
   double sense() const { return primed ? -1.0 : 1.0; }
 };
 
+/// The position of an axis contains the command of another one: parallelograms, belts through a joint, screws.
+///
+/// position of `axis` = its command + ratio times the command of `of`, over all couplings of the axis. Without any the
+/// position is the command. Error motions, location errors and states are functions of positions, travels are limits of
+/// commands. docs/kinematics.md.
+struct AxisCoupling {
+  std::size_t axis = 0;  ///< index into Machine::axes
+  std::size_t of = 0;    ///< index into Machine::axes
+  double ratio = 0;      ///< without unit for axes of one kind; mm per rad or rad per mm
+  bool operator==(const AxisCoupling&) const = default;
+};
+
 /// A serial machine from the workpiece to the tool.
 ///
 /// Machine frame: fixed to the bed, right-handed, axes X Y Z of ISO 841. All directions and points are given in it
@@ -92,6 +105,7 @@ struct Machine {
   Eigen::Vector3d tool_direction = Eigen::Vector3d::UnitZ();  ///< unit, from the functional point to the spindle
   std::vector<MachineState> states{};                         ///< what errors depend on besides commands; may be empty
   Eigen::Vector3d gravity{0, 0, -9.80665};                    ///< m/s^2, machine frame; by default standard, along -Z
+  std::vector<AxisCoupling> couplings{};                      ///< at most one of an axis to another; mostly none
 
   std::size_t workpiece_axis_count() const;
 
@@ -113,18 +127,18 @@ Eigen::Vector3d direction_from_letter(char letter);
 /// Displacement of the body carried by one axis without errors: bed-side frame from carried frame.
 ///
 /// linear: Trans(sense q u); rotary: Trans(point) Rot(u, sense q) Trans(-point).
-/// @param position  command, mm or rad
+/// @param position  of the axis: its command where it has no coupling; mm or rad
 RigidTransform nominal_motion(const Axis& axis, double position);
 
 /// bed_from_tool without errors, at the functional point.
-/// @param positions  commands in chain order, [axes.size()], mm or rad
-RigidTransform nominal_bed_from_tool(const Machine& machine, const std::vector<double>& positions);
+/// @param commands  in chain order, [axes.size()], mm or rad
+RigidTransform nominal_bed_from_tool(const Machine& machine, const std::vector<double>& commands);
 
 /// bed_from_workpiece without errors.
-RigidTransform nominal_bed_from_workpiece(const Machine& machine, const std::vector<double>& positions);
+RigidTransform nominal_bed_from_workpiece(const Machine& machine, const std::vector<double>& commands);
 
 /// workpiece_from_tool without errors: (workpiece-side axes, bed to workpiece)^-1 (tool-side axes, bed to tool) tool.
-RigidTransform nominal_workpiece_from_tool(const Machine& machine, const std::vector<double>& positions);
-RigidTransform nominal_workpiece_from_tool(const Machine& machine, std::span<const double> positions);
+RigidTransform nominal_workpiece_from_tool(const Machine& machine, const std::vector<double>& commands);
+RigidTransform nominal_workpiece_from_tool(const Machine& machine, std::span<const double> commands);
 
 }  // namespace abbe

@@ -18,7 +18,7 @@ struct Machine;
 enum class StateKind {
   measured,  ///< a channel that is given with every pose: a temperature, a load, a speed
   lag,       ///< a measured channel behind a first-order lag, given with every pose too
-  axis,      ///< the command of an axis
+  axis,      ///< the position of an axis
   approach,  ///< from which side an axis came: +1, -1, 0 where that is not known
   gravity,   ///< torque of point masses about the line of an axis, by nominal kinematics
   product    ///< product of two other states
@@ -79,16 +79,16 @@ bool depends_on_commands(const Machine& machine, std::size_t state);
 
 /// Factor of a state at one pose.
 ///
-/// @param positions     commands in chain order, [axes], mm or rad
+/// @param commands      in chain order, [axes], mm or rad
 /// @param given         [states] values of measured and lag states in their unit and sides of approach, NaN where not
 ///                      given (others are not read); or empty: nothing is given
-/// @param by_positions  if not null: d(factor)/d(command), becomes [axes], per mm or rad
+/// @param by_commands   if not null: d(factor)/d(command), becomes [axes], per mm or rad
 /// @returns NaN where an input state is not given
-double state_factor(const Machine& machine, std::size_t state, std::span<const double> positions,
-                    std::span<const double> given, std::vector<double>* by_positions = nullptr);
+double state_factor(const Machine& machine, std::size_t state, std::span<const double> commands,
+                    std::span<const double> given, std::vector<double>* by_commands = nullptr);
 
 /// Factors of all states at one pose, [states].
-std::vector<double> state_factors(const Machine& machine, std::span<const double> positions,
+std::vector<double> state_factors(const Machine& machine, std::span<const double> commands,
                                   std::span<const double> given);
 
 /// A channel behind a first-order lag: tau dy/dt + y = u, exact for u piecewise linear between the times.

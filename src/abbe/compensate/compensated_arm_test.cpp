@@ -15,7 +15,10 @@
 namespace abbe {
 namespace {
 
-std::vector<Machine> arms() { return {test::jointed_arm(), test::parallel_axes_arm(), test::seven_axis_arm()}; }
+std::vector<Machine> arms() {
+  return {test::jointed_arm(), test::parallel_axes_arm(), test::seven_axis_arm(), test::coupled_arm(),
+          test::coupled_seven_axis_arm()};
+}
 
 /// Smallest singularity margin of the working axes at a pose, by the nominal inverse kinematics.
 double margin_at(const Machine& machine, const std::vector<double>& commands) {
@@ -61,6 +64,34 @@ TEST(CompensatedArm, EveryPoseAwayFromSingularitiesIsReachedWhole) {
     }
     EXPECT_GE(regular, 150);
   }
+}
+
+TEST(CompensatedArm, AnAxisThatIsCoupledToOneThatMovesCannotKeepItsCommandAlone) {
+  const Machine machine = test::coupled_arm();
+  const std::size_t b1 = machine.find_axis("B1"), b2 = machine.find_axis("B2");
+  const std::size_t alone[] = {b2}, both[] = {b1, b2};
+  EXPECT_EQ(CompensatedInverse(machine, {}, {}, alone).problem(),
+            "B2 cannot be held alone: it is coupled to B1; hold B1 too");
+  EXPECT_EQ(CompensatedInverse(machine, {}, {}, both).problem(), "");
+}
+
+/// A rotary axis that turns with a linear one: neither can be found before the other.
+TEST(CompensatedArm, ARotaryAxisThatIsCoupledToALinearOneIsFoundTogetherWithIt) {
+  Machine machine = test::coupled_fork_head();
+  machine.couplings = {{machine.find_axis("A"), machine.find_axis("Z"), 2e-4}};
+  const ErrorSet errors = test::tens_of_micrometres(machine, 3);
+  const PoseList poses = inner_poses(machine, 100, 5);
+  const CorrectedPoses corrected = corrected_poses(machine, errors, {}, poses);
+  int reached = 0;
+  for (std::size_t k = 0; k < poses.count(); ++k) {
+    if (corrected.status[k] != CorrectionStatus::reached) continue;
+    ++reached;
+    const RigidTransform wanted = nominal_workpiece_from_tool(machine, poses.pose(k));
+    const RigidTransform after = actual_workpiece_from_tool(machine, errors, corrected.commands.pose(k));
+    EXPECT_LE((after.translation - wanted.translation).norm(), 1e-6);
+    EXPECT_LE(1 - (after.rotation * machine.tool_direction).dot(wanted.rotation * machine.tool_direction), 1e-15);
+  }
+  EXPECT_GE(reached, 80);
 }
 
 TEST(CompensatedArm, NearAWristSingularityThePointIsReachedAndTheTurnBounded) {

@@ -100,6 +100,8 @@ struct CompensatedInverse::Implementation {
       }
       kept.push_back({axis, 0});
     }
+    problem = problem_of_kept(kept);
+    if (!problem.empty()) return;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) repeats[i] = repeats_each_turn(machine, i, errors);
     stepper = std::make_unique<CorrectionStep>(machine, options, kept);
     if (stepper->is_inverted()) {
@@ -116,6 +118,19 @@ struct CompensatedInverse::Implementation {
     }
     zeros.fill(0);
     ones.fill(1);
+  }
+
+  /// An axis that keeps its command while one that it is coupled to moves would not stand still.
+  std::string problem_of_kept(const std::vector<HeldAxis>& kept) const {
+    const auto is_kept = [&](std::size_t axis) {
+      return std::any_of(kept.begin(), kept.end(), [axis](const HeldAxis& held) { return held.axis == axis; });
+    };
+    for (const AxisCoupling& coupling : machine.couplings) {
+      if (!is_kept(coupling.axis) || is_kept(coupling.of)) continue;
+      const std::string &axis = machine.axes[coupling.axis].name, &of = machine.axes[coupling.of].name;
+      return axis + " cannot be held alone: it is coupled to " + of + "; hold " + of + " too";
+    }
+    return {};
   }
 
   /// Where the tool is by now, and what of the wanted pose is missing.

@@ -41,6 +41,14 @@ bool has_idle_rotary_axis(const Machine& machine, const WorkingAxes& working, co
   });
 }
 
+/// Whether a rotary axis that is at work turns with a linear axis that it is coupled to.
+bool turns_with_linear_axes(const Machine& machine, const WorkingAxes& working) {
+  return std::any_of(machine.couplings.begin(), machine.couplings.end(), [&](const AxisCoupling& coupling) {
+    return machine.axes[coupling.axis].kind == AxisKind::rotary &&
+           std::find(working.reaching.begin(), working.reaching.end(), coupling.of) != working.reaching.end();
+  });
+}
+
 }  // namespace
 
 WorkingAxes working_axes(const Machine& machine, TargetKind target, const std::vector<HeldAxis>& kept) {
@@ -60,7 +68,8 @@ WorkingAxes working_axes(const Machine& machine, TargetKind target, const std::v
     working.orientation_rows = rows_of(target);
   }
   const std::vector<std::size_t> free = free_axes(machine, kept);
-  if (working.reaching.size() < 3 && has_idle_rotary_axis(machine, working, free)) {
+  const bool together = working.reaching.size() < 3 && has_idle_rotary_axis(machine, working, free);
+  if (together || turns_with_linear_axes(machine, working)) {
     working = {};
     working.arm = free;
     working.orientation_rows = rows_of(target);

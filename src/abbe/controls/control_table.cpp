@@ -17,6 +17,7 @@
 #include "abbe/controls/writer_request.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/verify/error_map.h"
 
 namespace abbe {
@@ -201,6 +202,7 @@ std::string LossOverStates::outside_words() const {
 }
 
 ControlTables make_control_tables(const ControlTableRequest& request) {
+  refuse_couplings(request.machine, "a table of a control");
   refuse_states_of(request.format, request.machine, request.errors);
   const TableFormat& format = table_format(request.format);
   const Machine& machine = request.machine;

@@ -14,6 +14,7 @@
 #include "abbe/errors/calibrated_machine.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/machine/axis_unit.h"
 
@@ -143,6 +144,7 @@ void judge_values(const KinematicValuesRequest& request, KinematicValues& made) 
 }  // namespace
 
 KinematicValues make_kinematic_values(const KinematicValuesRequest& request) {
+  refuse_couplings(request.machine, "a kinematic value of a control");
   refuse_states(request.machine, request.errors, "a kinematic value of a control");
   const KinematicFormat& format = kinematic_format(request.format);
   check_values_request(request, format);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/coupling.h"
 
 namespace abbe {
 namespace {
@@ -146,10 +147,11 @@ RigidTransform actual_motion(const Machine& machine, const ErrorSet& errors, std
                           factors);
 }
 
-RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& errors,
-                                    const std::vector<double>& positions, std::span<const double> given) {
-  assert(positions.size() == machine.axes.size());
-  const std::vector<double> factors = state_factors(machine, positions, given);
+RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& errors, const std::vector<double>& commands,
+                                    std::span<const double> given) {
+  assert(commands.size() == machine.axes.size());
+  const std::vector<double> factors = state_factors(machine, commands, given);
+  const std::vector<double> positions = positions_of_commands(machine, commands);
   RigidTransform bed_from_tool;
   for (std::size_t i = machine.workpiece_axis_count(); i < machine.axes.size(); ++i) {
     bed_from_tool = bed_from_tool * actual_motion(machine, errors, i, positions[i], factors);
@@ -159,9 +161,10 @@ RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& erro
 }
 
 RigidTransform actual_bed_from_workpiece(const Machine& machine, const ErrorSet& errors,
-                                         const std::vector<double>& positions, std::span<const double> given) {
-  assert(positions.size() == machine.axes.size());
-  const std::vector<double> factors = state_factors(machine, positions, given);
+                                         const std::vector<double>& commands, std::span<const double> given) {
+  assert(commands.size() == machine.axes.size());
+  const std::vector<double> factors = state_factors(machine, commands, given);
+  const std::vector<double> positions = positions_of_commands(machine, commands);
   RigidTransform bed_from_workpiece;
   for (std::size_t i = machine.workpiece_axis_count(); i-- > 0;) {
     bed_from_workpiece = bed_from_workpiece * actual_motion(machine, errors, i, positions[i], factors);
@@ -170,17 +173,18 @@ RigidTransform actual_bed_from_workpiece(const Machine& machine, const ErrorSet&
 }
 
 RigidTransform actual_workpiece_from_tool(const Machine& machine, const ErrorSet& errors,
-                                          const std::vector<double>& positions, std::span<const double> given) {
+                                          const std::vector<double>& commands, std::span<const double> given) {
   assert(!errors.composition.first_order && "a first-order error is not a rotation and has no such inverse");
-  return actual_bed_from_workpiece(machine, errors, positions, given).inverse() *
-         actual_bed_from_tool(machine, errors, positions, given);
+  return actual_bed_from_workpiece(machine, errors, commands, given).inverse() *
+         actual_bed_from_tool(machine, errors, commands, given);
 }
 
-PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const std::vector<double>& positions,
-                          Deviation& deviation, Eigen::MatrixXd* by_parameters, Eigen::MatrixXd* by_positions,
+PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const std::vector<double>& commands,
+                          Deviation& deviation, Eigen::MatrixXd* by_parameters, Eigen::MatrixXd* by_commands,
                           std::span<const double> given) {
-  const RigidTransform actual = actual_workpiece_from_tool(machine, errors, positions, given);
-  const RigidTransform nominal = nominal_workpiece_from_tool(machine, positions);
+  const RigidTransform actual = actual_workpiece_from_tool(machine, errors, commands, given);
+  const RigidTransform nominal = nominal_workpiece_from_tool(machine, commands);
+  const std::vector<double> positions = positions_of_commands(machine, commands);
   deviation.head<3>() = actual.translation - nominal.translation;
   deviation.tail<3>() = rotation_vector(actual.rotation * nominal.rotation.transpose());
 
@@ -188,7 +192,7 @@ PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const 
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     if (!errors.covers(i, positions[i])) status = PoseStatus::out_of_range;
   }
-  const std::vector<double> factors = state_factors(machine, positions, given);
+  const std::vector<double> factors = state_factors(machine, commands, given);
   std::vector<std::uint8_t> used(machine.states.size(), 0);
   for (const ErrorMotion& motion : errors.motions) {
     if (motion.state != kNoState) used[motion.state] = 1;
@@ -199,15 +203,15 @@ PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const 
   for (std::size_t j = 0; j < used.size(); ++j) {
     if (used[j] != 0 && !std::isfinite(factors[j])) status = PoseStatus::out_of_range;
   }
-  if (!by_parameters && !by_positions) return status;
+  if (!by_parameters && !by_commands) return status;
 
-  const RigidTransform bed_from_workpiece = actual_bed_from_workpiece(machine, errors, positions, given);
-  const RigidTransform bed_from_tool = actual_bed_from_tool(machine, errors, positions, given);
+  const RigidTransform bed_from_workpiece = actual_bed_from_workpiece(machine, errors, commands, given);
+  const RigidTransform bed_from_tool = actual_bed_from_tool(machine, errors, commands, given);
   const Eigen::Matrix3d workpiece_from_bed = bed_from_workpiece.rotation.transpose();
   const Eigen::Vector3d point = bed_from_tool.translation;
 
   if (by_parameters) by_parameters->setZero(6, static_cast<Eigen::Index>(errors.parameter_count()));
-  if (by_positions) by_positions->setZero(6, static_cast<Eigen::Index>(machine.axes.size()));
+  if (by_commands) by_commands->setZero(6, static_cast<Eigen::Index>(machine.axes.size()));
   std::vector<Deviation> by_factor(machine.states.size(), Deviation::Zero());
   const std::size_t workpiece_side = machine.workpiece_axis_count();
 
@@ -222,7 +226,7 @@ PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const 
       column.tail<3>() = sign * (workpiece_from_bed * in_bed.angular);
       return column;
     };
-    if (by_positions) by_positions->col(static_cast<Eigen::Index>(axis)) = seen(twists.position);
+    if (by_commands) by_commands->col(static_cast<Eigen::Index>(axis)) = seen(twists.position);
     Eigen::Index column = 0;
     std::vector<double> functions;
     for (const ErrorMotion& term : errors.motions) {
@@ -263,12 +267,18 @@ PoseStatus tool_deviation(const Machine& machine, const ErrorSet& errors, const 
   if (by_parameters) {
     by_parameters->topRightCorner<3, 3>() = workpiece_from_bed * bed_from_tool.rotation;
   }
-  for (std::size_t j = 0; by_positions && j < used.size(); ++j) {
+  if (by_commands) {
+    for (const AxisCoupling& coupling : couplings_in_order(machine)) {
+      by_commands->col(static_cast<Eigen::Index>(coupling.of)) +=
+          coupling.ratio * by_commands->col(static_cast<Eigen::Index>(coupling.axis));
+    }
+  }
+  for (std::size_t j = 0; by_commands && j < used.size(); ++j) {
     if (used[j] == 0 || !depends_on_commands(machine, j)) continue;
     std::vector<double> slopes;
-    state_factor(machine, j, positions, given, &slopes);
+    state_factor(machine, j, commands, given, &slopes);
     for (std::size_t i = 0; i < slopes.size(); ++i) {
-      by_positions->col(static_cast<Eigen::Index>(i)) += slopes[i] * by_factor[j];
+      by_commands->col(static_cast<Eigen::Index>(i)) += slopes[i] * by_factor[j];
     }
   }
   return status;

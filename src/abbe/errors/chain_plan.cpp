@@ -9,8 +9,10 @@
 
 #include "abbe/errors/chain_kernel.h"
 #include "abbe/errors/chain_kernel_functions.h"
+#include "abbe/errors/coupled_positions.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/coupling.h"
 
 namespace abbe {
 namespace {
@@ -114,6 +116,21 @@ void add_loads(const Machine& machine, const MachineState& state, CompiledChain&
   }
 }
 
+ConstPointArrays points_from(const ConstPointArrays& arrays, std::size_t first) {
+  return {arrays.x + first, arrays.y + first, arrays.z + first};
+}
+
+PointArrays points_from(const PointArrays& arrays, std::size_t first) {
+  return {arrays.x + first, arrays.y + first, arrays.z + first};
+}
+
+RotationArrays rotations_from(RotationArrays arrays, std::size_t first) {
+  for (double*& element : arrays.r) {
+    if (element != nullptr) element += first;
+  }
+  return arrays;
+}
+
 AxisStep::Location channels_of(const LocationEffect& effect, std::size_t parameter) {
   AxisStep::Location location{parameter};
   for (int k = 0; k < 3; ++k) location.effect[k] = effect.shift[k];
@@ -135,6 +152,7 @@ struct ChainPlan::Implementation {
   CompiledChain chain;
   chain::FunctionCompiler functions;
   std::vector<Line> lines;                  ///< nominal, per step
+  std::vector<AxisCoupling> couplings;      ///< in the order of couplings_in_order()
   std::vector<std::size_t> compiled_state;  ///< [states of the machine] index into CompiledChain::states or kNoState
   std::size_t parameter_count = 0;
 
@@ -230,6 +248,7 @@ struct ChainPlan::Implementation {
 ChainPlan::ChainPlan(const Machine& machine, const ErrorSet& errors, Body from, Body to)
     : implementation_(std::make_unique<Implementation>()) {
   CompiledChain& chain = implementation_->chain;
+  implementation_->couplings = couplings_in_order(machine);
   implementation_->parameter_count = errors.parameter_count();
   chain.influences.assign(errors.parameter_count(), 0);
   chain.tool_parameter = errors.parameter_count() - 3;
@@ -269,8 +288,15 @@ void ChainPlan::set_parameters(std::span<const double> values) {
 void ChainPlan::transform(PositionArrays positions, ConstPointArrays start, PointArrays seen, RotationArrays rotation,
                           std::uint8_t* covered) const {
   for (std::size_t first = 0; first < positions.count; first += kBlockSize) {
-    chain::transform_block(implementation_->chain, positions, first, std::min(kBlockSize, positions.count - first),
-                           start, seen, rotation, covered);
+    const std::size_t count = std::min(kBlockSize, positions.count - first);
+    if (implementation_->couplings.empty()) {
+      chain::transform_block(implementation_->chain, positions, first, count, start, seen, rotation, covered);
+    } else {
+      const chain::CoupledPositions block(implementation_->couplings, positions, first, count);
+      chain::transform_block(implementation_->chain, block.arrays(), 0, count, points_from(start, first),
+                             points_from(seen, first), rotations_from(rotation, first),
+                             covered != nullptr ? covered + first : nullptr);
+    }
   }
 }
 
@@ -280,10 +306,18 @@ void ChainPlan::differentiate(PositionArrays positions, ConstPointArrays /*start
                               double* by_position) const {
   assert(positions.count <= kBlockSize);
   assert(parameters.empty() || stride >= rows.size() * positions.count);
-  const chain::DifferentiateCall call{positions, seen, rows, parameters, jacobian, stride, by_start, by_position};
-  for (std::size_t first = 0; first < rows.size(); first += chain::kRowsAtOnce) {
-    chain::differentiate_rows(implementation_->chain, call, first, std::min(chain::kRowsAtOnce, rows.size() - first));
-  }
+  const std::vector<AxisCoupling>& couplings = implementation_->couplings;
+  chain::DifferentiateCall call{positions, seen, rows, parameters, jacobian, stride, by_start, by_position};
+  const auto sweep = [&] {
+    for (std::size_t first = 0; first < rows.size(); first += chain::kRowsAtOnce) {
+      chain::differentiate_rows(implementation_->chain, call, first, std::min(chain::kRowsAtOnce, rows.size() - first));
+    }
+  };
+  if (couplings.empty()) return sweep();
+  const chain::CoupledPositions block(couplings, positions, 0, positions.count);
+  call.positions = block.arrays();
+  sweep();
+  if (by_position != nullptr) chain::hand_to_commands(couplings, rows.size() * positions.count, by_position);
 }
 
 }  // namespace abbe

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "abbe/machine/coupling.h"
+
 namespace abbe {
 namespace {
 
@@ -69,6 +71,13 @@ std::array<double, kComponentCount> ErrorSet::evaluate(std::size_t axis, double 
 bool ErrorSet::covers(std::size_t axis, double position) const {
   for (const ErrorMotion& motion : motions) {
     if (motion.axis == axis && !motion.basis.covers(position)) return false;
+  }
+  return true;
+}
+
+bool covers_commands(const Machine& machine, const ErrorSet& errors, std::span<const double> commands) {
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (!errors.covers(i, commands[i] + coupled_part(machine, i, commands.data()))) return false;
   }
   return true;
 }

@@ -6,6 +6,15 @@
 
 namespace abbe {
 
+std::vector<double> positions_of_axis(const Machine& machine, const PoseList& poses, std::size_t axis) {
+  std::vector<double> positions = poses.axis[axis];
+  for (const AxisCoupling& coupling : machine.couplings) {
+    if (coupling.axis != axis) continue;
+    for (std::size_t k = 0; k < positions.size(); ++k) positions[k] += coupling.ratio * poses.axis[coupling.of][k];
+  }
+  return positions;
+}
+
 PoseSource pose_source(const PoseList& list) {
   PoseSource source{list.axis.size(), list.count(),
                     [&list](std::size_t first, std::size_t number, double* const* axis) {

@@ -11,6 +11,7 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/best_fit_transform.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/coupling.h"
 
 namespace abbe {
 namespace {
@@ -25,10 +26,10 @@ ErrorMotion random_motion(const Machine& machine, std::size_t index, Component c
   const Axis& axis = machine.axes[index];
   ErrorMotion motion{
       .axis = index, .component = component, .basis = {}, .coefficients = {}, .standard_uncertainty = {}};
-  const bool turns =
-      axis.kind == AxisKind::rotary && (axis.endless || axis.travel_max - axis.travel_min >= kTurn * (1 - 1e-9));
-  motion.basis.from = turns && axis.endless ? 0 : axis.travel_min;
-  motion.basis.to = turns && axis.endless ? kTurn : axis.travel_max;
+  const PositionLimits travel = position_limits(machine, index);
+  const bool turns = axis.kind == AxisKind::rotary && (axis.endless || travel.to - travel.from >= kTurn * (1 - 1e-9));
+  motion.basis.from = turns && axis.endless ? 0 : travel.from;
+  motion.basis.to = turns && axis.endless ? kTurn : travel.to;
   motion.basis.kind = turns ? BasisKind::fourier : BasisKind::legendre;
   motion.basis.period = turns ? kTurn : 0;
   motion.basis.order = turns                           ? options.rotary_harmonics

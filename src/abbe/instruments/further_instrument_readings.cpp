@@ -162,11 +162,7 @@ class InstrumentTrials {
   }
 
   /// Error motions have no value outside their range.
-  bool within_known(const std::vector<double>& pose) const {
-    for (std::size_t i = 0; i < pose.size(); ++i)
-      if (!errors_.covers(i, pose[i])) return false;
-    return true;
-  }
+  bool within_known(const std::vector<double>& pose) const { return covers_commands(machine_, errors_, pose); }
 
   /// Those that the instrument can show, with the uncertainty of the readings measured.
   InstrumentReadings readable(const std::shared_ptr<const Instrument>& device,

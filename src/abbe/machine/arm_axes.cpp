@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/coupling.h"
 
 namespace abbe {
 namespace {
@@ -65,14 +66,15 @@ class ArmChoice {
   }
 
  private:
-  /// A command within travel; the numbers of one axis fill it evenly (additive recurrences with square roots).
+  /// A position within travel; the numbers of one axis fill it evenly (additive recurrences with square roots).
   double command(std::size_t i, int pose) const {
     constexpr std::array<double, kMaxAxes> kRoot{0.4142, 0.7321, 0.2361, 0.6458, 0.3166, 0.6056, 0.1231, 0.3589,
                                                  0.7958, 0.3852, 0.5678, 0.0828, 0.4031, 0.5574, 0.8557, 0.2801};
     const Axis& axis = machine_.axes[i];
     const double part = std::fmod(0.37 + kRoot[i] * (pose + 1), 1.0);
     if (axis.endless) return 2 * std::numbers::pi * part;
-    return axis.travel_min + part * (axis.travel_max - axis.travel_min);
+    const PositionLimits travel = position_limits(machine_, i);
+    return travel.from + part * (travel.to - travel.from);
   }
 
   double volume_at(const std::array<std::size_t, 6>& working, std::size_t count, int pose) const {

@@ -48,8 +48,10 @@ RigidTransform along_z(const DhJoint& joint, double command) {
 
 RigidTransform dh_pose(const DhArm& arm, std::span<const double> commands) {
   RigidTransform frame = arm.workpiece_from_base;
+  std::vector<double> positions(commands.begin(), commands.end());
+  for (const AxisCoupling& coupling : arm.couplings) positions[coupling.axis] += coupling.ratio * commands[coupling.of];
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    const RigidTransform x = along_x(arm.joints[i]), z = along_z(arm.joints[i], commands[i]);
+    const RigidTransform x = along_x(arm.joints[i]), z = along_z(arm.joints[i], positions[i]);
     frame = frame * (arm.convention == DhConvention::standard ? z * x : x * z);
   }
   return frame * arm.last_from_tool;
@@ -59,6 +61,7 @@ Machine machine_from_dh(const DhArm& arm) {
   Machine machine;
   machine.name = arm.name;
   machine.description = arm.description;
+  machine.couplings = arm.couplings;
   RigidTransform frame = arm.workpiece_from_base;
   for (const DhJoint& joint : arm.joints) {
     const RigidTransform x = along_x(joint), z = along_z(joint, 0);

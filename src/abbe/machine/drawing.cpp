@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "abbe/geometry/angle_units.h"
+#include "abbe/machine/coupling.h"
 
 namespace abbe {
 namespace {
@@ -58,7 +59,8 @@ std::string repeated(const char* text, std::size_t count) {
 
 using Cells = std::array<std::string, 4>;  // name, motion, point, travel
 
-Cells axis_cells(const Axis& axis) {
+Cells axis_cells(const Machine& machine, std::size_t index) {
+  const Axis& axis = machine.axes[index];
   const bool linear = axis.kind == AxisKind::linear;
   const Eigen::Vector3d motion = axis.sense() * axis.direction;
   Cells cells;
@@ -70,6 +72,7 @@ Cells axis_cells(const Axis& axis) {
                           : readable_number(axis.travel_min / unit) + " … " + readable_number(axis.travel_max / unit) +
                                 (linear ? " mm" : " deg");
   if (axis.setting) cells[3] += ", setting";
+  if (is_coupled(machine, index)) cells[3] += ", coupled";
   return cells;
 }
 
@@ -101,8 +104,8 @@ void append_wrapped(std::string& drawing, const std::string& text, std::size_t i
 std::string draw_machine(const Machine& machine) {
   std::vector<Cells> rows;
   std::array<std::size_t, 4> columns{};
-  for (const Axis& axis : machine.axes) {
-    rows.push_back(axis_cells(axis));
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    rows.push_back(axis_cells(machine, i));
     for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = std::max(columns[k], width(rows.back()[k]));
   }
   const std::size_t all = 2 + columns[0] + 2 + columns[1] + 2 + columns[2] + 2 + columns[3];

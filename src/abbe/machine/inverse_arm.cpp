@@ -73,19 +73,19 @@ ArmLoop arm_loop(const Machine& machine, const InversePlan& plan, const PoseTarg
 
 }  // namespace
 
-void InverseKinematics::solve_arm(const InversePlan& plan, const PoseTarget& target, const double* start,
+void InverseKinematics::solve_arm(const InversePlan& plan, const PoseTarget& target, const Start& start,
                                   InverseResult& result) const {
   InverseSolution solution;
   solution.position = plan.command;
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-    if (plan.held[i] && !plan.held_by_option[i]) solution.position[i] = start[i];
+    if (plan.held[i] && !plan.held_by_option[i]) solution.position[i] = start.position[i];
   }
   const ArmLoop arm = arm_loop(machine_, plan, target, solution.position);
   const double size = arm.loop.size();
   LoopAngles begin{};
   std::uint32_t working = 0;
   for (std::size_t k = 0; k < plan.arm_count; ++k) {
-    begin[k] = chain_sign(machine_.axes[plan.arm[k]]) * start[plan.arm[k]];
+    begin[k] = chain_sign(machine_.axes[plan.arm[k]]) * start.position[plan.arm[k]];
     working |= 1U << plan.arm[k];
   }
   const auto take = [&](const LoopAngles& angles) {
@@ -107,7 +107,7 @@ void InverseKinematics::solve_arm(const InversePlan& plan, const PoseTarget& tar
     if (found[k].free_axis < plan.arm_count) {
       solution.singular_axis = plan.arm[found[k].free_axis];
       solution.singularity = PoseSingularity::arm_dependent;
-      solution.position[solution.singular_axis] = start[solution.singular_axis];
+      solution.position[solution.singular_axis] = start.position[solution.singular_axis];
       turning &= ~(1U << solution.singular_axis);
     } else if (solution.singular_margin < kSingularArm) {
       solution.singularity = PoseSingularity::limit_of_reach;

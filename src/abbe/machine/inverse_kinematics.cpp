@@ -150,18 +150,41 @@ InverseKinematics::InverseKinematics(const Machine& machine, const InverseOption
     const double nearest_zero = axis.endless ? 0 : std::clamp(0.0, axis.travel_min, axis.travel_max);
     reference_[i] = options.reference.empty() ? nearest_zero : options.reference[i];
   }
+  order_ = coupling_order(machine_);
+  const std::array<double, kMaxAxes> positions = held_positions();
+  if (!problem_.empty()) return;
   for (std::size_t kind = 0; kind < plans_.size(); ++kind) {
     plans_[kind] = make_inverse_plan(machine_, static_cast<TargetKind>(kind), options_.held,
-                                     {reference_.data(), machine_.axes.size()});
+                                     {positions.data(), machine_.axes.size()});
   }
+}
+
+std::array<double, kMaxAxes> InverseKinematics::held_positions() {
+  if (machine_.couplings.empty()) return reference_;
+  std::array<double, kMaxAxes> commands = reference_, positions{};
+  const auto is_held = [&](std::size_t axis) {
+    return std::any_of(options_.held.begin(), options_.held.end(),
+                       [axis](const HeldAxis& held) { return held.axis == axis; });
+  };
+  for (const HeldAxis& held : options_.held) commands[held.axis] = held.position;
+  for (const AxisCoupling& coupling : machine_.couplings) {
+    if (!is_held(coupling.axis) || is_held(coupling.of)) continue;
+    const std::string &axis = machine_.axes[coupling.axis].name, &of = machine_.axes[coupling.of].name;
+    problem_ = axis + " cannot be held alone: it is coupled to " + of + "; hold " + of + " too";
+  }
+  positions_of_commands(machine_, commands.data(), positions.data());
+  for (HeldAxis& held : options_.held) held.position = positions[held.axis];
+  return positions;
 }
 
 std::vector<HeldAxis> InverseKinematics::held_axes(TargetKind kind) const {
   const InversePlan& plan = plans_[static_cast<std::size_t>(kind)];
+  std::array<double, kMaxAxes> command{};
+  commands_of_positions(machine_, plan.command.data(), command.data());
   std::vector<HeldAxis> held;
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
     const bool polar = plan.arm_count == 0 && plan.polar_count > 0 && plan.polar[0] == i;
-    if (plan.held[i] && !polar) held.push_back({i, plan.command[i]});
+    if (plan.held[i] && !polar) held.push_back({i, command[i]});
   }
   return held;
 }
@@ -184,11 +207,17 @@ void InverseKinematics::solve(const PoseTarget& target, const double* start, Inv
     return;
   }
   if (start == nullptr) start = reference_.data();
+  std::array<double, kMaxAxes> start_position;
+  Start both{start, start};
+  if (!machine_.couplings.empty()) {
+    positions_of_commands(machine_, start, start_position.data());
+    both.position = start_position.data();
+  }
   const InversePlan& plan = plans_[static_cast<std::size_t>(target.kind)];
   if (plan.arm_count > 0) {
-    solve_arm(plan, target, start, result);
+    solve_arm(plan, target, both, result);
   } else {
-    solve_branches(plan, target, start, result);
+    solve_branches(plan, target, both, result);
   }
   if (result.solutions.empty()) {
     const bool misses_orientation = result.closest.orientation_residual > options_.orientation_tolerance;
@@ -208,12 +237,12 @@ void InverseKinematics::solve(const PoseTarget& target, const double* start, Inv
   result.status = result.solutions.front().within_travel ? InverseStatus::solved : InverseStatus::outside_travel;
 }
 
-void InverseKinematics::solve_branches(const InversePlan& plan, const PoseTarget& target, const double* start,
+void InverseKinematics::solve_branches(const InversePlan& plan, const PoseTarget& target, const Start& start,
                                        InverseResult& result) const {
   const Matrix3d& frame = machine_.bed_from_workpiece.rotation;
   const std::span<const Vector3d> axes(plan.direction.data(), plan.rotary_count);
   const std::size_t first = plan.rotary[0];
-  const double held_first = plan.rotary_count > 0 ? chain_sign(machine_.axes[first]) * start[first] : 0;
+  const double held_first = plan.rotary_count > 0 ? chain_sign(machine_.axes[first]) * start.position[first] : 0;
   RotaryBranches branches;
   if (target.kind == TargetKind::point) {
     branches.count = 1;
@@ -238,7 +267,7 @@ void InverseKinematics::solve_branches(const InversePlan& plan, const PoseTarget
       candidate.turning |= 1U << i;
     }
     if (found.singularity == RotarySingularity::first_axis_free) {
-      solution.position[first] = start[first];
+      solution.position[first] = start.position[first];
       candidate.turning &= ~(1U << first);
       solution.singular_axis = first;
       solution.singularity =
@@ -250,7 +279,7 @@ void InverseKinematics::solve_branches(const InversePlan& plan, const PoseTarget
   }
 }
 
-void InverseKinematics::solve_polar(const InversePlan& plan, const PoseTarget& target, const double* start,
+void InverseKinematics::solve_polar(const InversePlan& plan, const PoseTarget& target, const Start& start,
                                     Candidate candidate, InverseResult& result) const {
   std::array<std::size_t, kMaxAxes + 1> choices{};
   std::size_t count = 0;
@@ -294,12 +323,12 @@ void InverseKinematics::solve_polar(const InversePlan& plan, const PoseTarget& t
   if (on_axis && candidate.solution.singularity == PoseSingularity::none) {
     candidate.solution.singularity = PoseSingularity::point_on_axis;
     candidate.solution.singular_axis = choices[0];
-    candidate.solution.position[choices[0]] = start[choices[0]];
+    candidate.solution.position[choices[0]] = start.position[choices[0]];
   }
   solve_linear(plan, target, start, candidate, result);
 }
 
-void InverseKinematics::solve_linear(const InversePlan& plan, const PoseTarget& target, const double* start,
+void InverseKinematics::solve_linear(const InversePlan& plan, const PoseTarget& target, const Start& start,
                                      Candidate candidate, InverseResult& result) const {
   InverseSolution& solution = candidate.solution;
   const LinearSystem system = linear_system(machine_, plan, target.point, solution.position);
@@ -318,7 +347,7 @@ void InverseKinematics::solve_linear(const InversePlan& plan, const PoseTarget& 
     using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
     Vector3d near = Vector3d::Zero();
     for (std::size_t k = 0; k < plan.linear_count; ++k) {
-      near[static_cast<Eigen::Index>(k)] = start[plan.linear[k]];
+      near[static_cast<Eigen::Index>(k)] = start.position[plan.linear[k]];
     }
     Eigen::CompleteOrthogonalDecomposition<Columns> factors;
     factors.setThreshold(kDependentDeterminant);
@@ -336,21 +365,25 @@ void InverseKinematics::solve_linear(const InversePlan& plan, const PoseTarget& 
   add_turns(target, start, candidate.turning, 0, solution, result);
 }
 
-void InverseKinematics::add_turns(const PoseTarget& target, const double* start, std::uint32_t turning,
-                                  std::size_t axis_index, InverseSolution& solution, InverseResult& result) const {
-  while (axis_index < machine_.axes.size() && (turning >> axis_index & 1U) == 0) ++axis_index;
-  if (axis_index >= machine_.axes.size()) {
+void InverseKinematics::add_turns(const PoseTarget& target, const Start& start, std::uint32_t turning,
+                                  std::size_t place, InverseSolution& solution, InverseResult& result) const {
+  const bool is_coupled = !machine_.couplings.empty();
+  while (!is_coupled && place < order_.count && (turning >> order_.axis[place] & 1U) == 0) ++place;
+  if (place >= order_.count) {
     add_solution(target, solution, result);
     return;
   }
+  const std::size_t axis_index = order_.axis[place];
   const Axis& axis = machine_.axes[axis_index];
-  const double found = solution.position[axis_index];
-  const double nearest = start[axis_index] + std::remainder(found - start[axis_index], kTurn);
+  const double position = solution.position[axis_index];
+  const double found = is_coupled ? position - coupled_part(machine_, axis_index, solution.position.data()) : position;
   const auto next = [&](double command) {
     solution.position[axis_index] = command;
-    add_turns(target, start, turning, axis_index + 1, solution, result);
-    solution.position[axis_index] = found;
+    add_turns(target, start, turning, place + 1, solution, result);
+    solution.position[axis_index] = position;
   };
+  if ((turning >> axis_index & 1U) == 0) return next(found);
+  const double first = start.command[axis_index], nearest = first + std::remainder(found - first, kTurn);
   if (axis.endless) return next(nearest);
   const double low = std::ceil((axis.travel_min - kRotarySlack - nearest) / kTurn);
   const double high = std::floor((axis.travel_max + kRotarySlack - nearest) / kTurn);

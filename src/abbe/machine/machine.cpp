@@ -1,8 +1,10 @@
 #include "abbe/machine/machine.h"
 
+#include <array>
 #include <cassert>
 
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/coupling.h"
 
 namespace abbe {
 
@@ -55,6 +57,24 @@ RigidTransform nominal_motion(const Axis& axis, double position) {
 
 namespace {
 
+/// Positions of the axes at commands: these themselves where no axis is coupled.
+class NominalPositions {
+ public:
+  NominalPositions(const Machine& machine, std::span<const double> commands) : at_(commands) {
+    assert(commands.size() == machine.axes.size());
+    if (machine.couplings.empty()) return;
+    positions_of_commands(machine, commands.data(), coupled_.data());
+    at_ = {coupled_.data(), commands.size()};
+  }
+  NominalPositions(const NominalPositions&) = delete;
+  NominalPositions& operator=(const NominalPositions&) = delete;
+  std::span<const double> span() const { return at_; }
+
+ private:
+  std::array<double, kMaxAxes> coupled_;
+  std::span<const double> at_;
+};
+
 RigidTransform bed_from_tool(const Machine& machine, std::span<const double> positions) {
   assert(positions.size() == machine.axes.size());
   RigidTransform from_tool;
@@ -75,20 +95,21 @@ RigidTransform bed_from_workpiece(const Machine& machine, std::span<const double
 
 }  // namespace
 
-RigidTransform nominal_bed_from_tool(const Machine& machine, const std::vector<double>& positions) {
-  return bed_from_tool(machine, positions);
+RigidTransform nominal_bed_from_tool(const Machine& machine, const std::vector<double>& commands) {
+  return bed_from_tool(machine, NominalPositions(machine, commands).span());
 }
 
-RigidTransform nominal_bed_from_workpiece(const Machine& machine, const std::vector<double>& positions) {
-  return bed_from_workpiece(machine, positions);
+RigidTransform nominal_bed_from_workpiece(const Machine& machine, const std::vector<double>& commands) {
+  return bed_from_workpiece(machine, NominalPositions(machine, commands).span());
 }
 
-RigidTransform nominal_workpiece_from_tool(const Machine& machine, std::span<const double> positions) {
-  return bed_from_workpiece(machine, positions).inverse() * bed_from_tool(machine, positions);
+RigidTransform nominal_workpiece_from_tool(const Machine& machine, std::span<const double> commands) {
+  const NominalPositions positions(machine, commands);
+  return bed_from_workpiece(machine, positions.span()).inverse() * bed_from_tool(machine, positions.span());
 }
 
-RigidTransform nominal_workpiece_from_tool(const Machine& machine, const std::vector<double>& positions) {
-  return nominal_workpiece_from_tool(machine, std::span<const double>(positions));
+RigidTransform nominal_workpiece_from_tool(const Machine& machine, const std::vector<double>& commands) {
+  return nominal_workpiece_from_tool(machine, std::span<const double>(commands));
 }
 
 }  // namespace abbe

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/coupling.h"
 
 namespace abbe {
 namespace {
@@ -56,6 +57,7 @@ class Checker {
     check_finite("", "tool_reference", machine_.tool_reference);
     check_finite("", "tool_offset", machine_.tool_offset);
     check_frame();
+    check_couplings();
     check_states();
     return problems_;
   }
@@ -134,6 +136,73 @@ class Checker {
       report("", "bed_from_workpiece",
              "is not a rotation: its axes are not unit vectors at right angles, right-handed");
     }
+  }
+
+  void check_couplings() {
+    const std::size_t axes = machine_.axes.size();
+    if (axes > kMaxAxes) return;
+    const std::size_t before = problems_.size();
+    for (std::size_t k = 0; k < machine_.couplings.size(); ++k) {
+      const AxisCoupling& coupling = machine_.couplings[k];
+      if (coupling.axis >= axes || coupling.of >= axes) {
+        report("", "couplings", "name an axis that does not exist");
+        continue;
+      }
+      check_coupling(coupling);
+      for (std::size_t other = 0; other < k; ++other) {
+        if (machine_.couplings[other].axis != coupling.axis || machine_.couplings[other].of != coupling.of) continue;
+        report(machine_.axes[coupling.axis].name, "coupled",
+               "is coupled to " + machine_.axes[coupling.of].name + " twice");
+      }
+    }
+    if (problems_.size() != before) return;
+    const CouplingOrder order = coupling_order(machine_);
+    if (order.count < axes) report_cycle(order);
+    for (std::size_t i = 0; i < axes && order.count == axes; ++i) {
+      if (is_coupled(machine_, i) && !machine_.axes[i].endless) check_positions(i);
+    }
+  }
+
+  void check_coupling(const AxisCoupling& coupling) {
+    const Axis &axis = machine_.axes[coupling.axis], &of = machine_.axes[coupling.of];
+    const auto problem = [&](const std::string& message) { report(axis.name, "coupled", message); };
+    if (coupling.axis == coupling.of) problem("is coupled to itself");
+    if (!std::isfinite(coupling.ratio) || coupling.ratio == 0) {
+      problem("the ratio to " + of.name + " is " + ten_digits(coupling.ratio) + "; expected a number other than 0");
+    }
+    if (axis.side != of.side) {
+      problem(fmt::format("carries the {}, but {}, to which it is coupled, the {}: no drive goes through the bed",
+                          axis.side == ChainSide::tool ? "tool" : "workpiece", of.name,
+                          of.side == ChainSide::tool ? "tool" : "workpiece"));
+    }
+    if (of.endless) {
+      problem(of.name + ", to which it is coupled, is endless: its position would have no limits");
+    }
+    if (axis.setting && !of.setting) {
+      problem(of.name + ", to which it is coupled, is no setting axis: it would not stay where it is set");
+    }
+  }
+
+  void report_cycle(const CouplingOrder& order) {
+    std::string names;
+    std::size_t first = Machine::npos;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const auto* const end = order.axis.data() + order.count;
+      if (std::find(order.axis.data(), end, i) != end) continue;
+      if (first == Machine::npos) first = i;
+      names += (names.empty() ? "" : ", ") + machine_.axes[i].name;
+    }
+    report(machine_.axes[first].name, "coupled",
+           "the couplings go round: each of " + names + " needs the command of another one of them");
+  }
+
+  void check_positions(std::size_t i) {
+    const PositionLimits limits = position_limits(machine_, i);
+    const bool linear = machine_.axes[i].kind == AxisKind::linear;
+    const double largest = std::max(std::abs(limits.from), std::abs(limits.to));
+    if (largest <= (linear ? kLargestPosition : kLargestAngle)) return;
+    report(machine_.axes[i].name, "coupled",
+           fmt::format("moves it up to {:g} {}; check ratios and travels", largest, linear ? "mm" : "rad"));
   }
 
   void check_states() {

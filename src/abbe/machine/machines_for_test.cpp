@@ -286,6 +286,42 @@ Machine seven_axis_arm() {
   return m;
 }
 
+namespace {
+
+void couple(Machine& m, const char* axis_name, const char* of, double ratio) {
+  m.couplings.push_back({m.find_axis(axis_name), m.find_axis(of), ratio});
+}
+
+}  // namespace
+
+Machine coupled_arm() {
+  Machine m = jointed_arm();
+  m.name = "coupled arm";
+  couple(m, "A2", "B3", 0.5);
+  couple(m, "B2", "B1", -1);
+  couple(m, "B3", "A1", 0.02);
+  couple(m, "A2", "A1", -0.03);
+  return m;
+}
+
+Machine coupled_seven_axis_arm() {
+  Machine m = seven_axis_arm();
+  m.name = "coupled seven-axis arm";
+  couple(m, "B2", "B1", 1);
+  couple(m, "C4", "B3", -0.25);
+  return m;
+}
+
+Machine coupled_fork_head() {
+  Machine m = gantry_fork_head();
+  m.name = "coupled fork head";
+  axis(m, "C").endless = false;
+  travel(m, "C", -200, 200);
+  couple(m, "A", "C", 0.1);
+  couple(m, "Z", "A", 3);
+  return m;
+}
+
 Machine single_axis(const std::string& chain) { return from_chain(chain, chain); }
 
 std::vector<NamedMachine> all_machines() {

@@ -41,6 +41,13 @@ Machine seven_axis_arm();
 Machine arm_of_lines(const std::vector<Eigen::Vector3d>& directions, const std::vector<Eigen::Vector3d>& points,
                      const Eigen::Vector3d& tool);
 
+/// The jointed arm with a parallelogram (B2 counts from the horizontal) and belts through its wrist.
+Machine coupled_arm();
+/// The seven-axis arm with a coupled elbow and a belt.
+Machine coupled_seven_axis_arm();
+/// The gantry with a fork head whose second axis is driven through the first one, and a Z that A lifts.
+Machine coupled_fork_head();
+
 struct NamedMachine {
   std::string name;
   Machine machine;

@@ -9,6 +9,7 @@
 #include "abbe/geometry/angle.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/machine/orientation.h"
 
 namespace abbe {
@@ -177,8 +178,11 @@ class PathSearch {
 
   /// The same branch, a rotary axis whole turns further.
   bool differ_by_turns(const InverseSolution& one, const InverseSolution& other) const {
+    std::array<double, kMaxAxes> of_one, of_other;
+    positions_of_commands(machine_, one.position.data(), of_one.data());
+    positions_of_commands(machine_, other.position.data(), of_other.data());
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-      const double difference = other.position[i] - one.position[i];
+      const double difference = of_other[i] - of_one[i];
       const bool rotary = machine_.axes[i].kind == AxisKind::rotary;
       if (std::abs(rotary ? std::remainder(difference, kTurn) : difference) > 1e-6) return false;
     }

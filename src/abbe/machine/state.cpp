@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "abbe/machine/coupling.h"
 #include "abbe/machine/first_order_lag.h"
 #include "abbe/machine/machine.h"
 
@@ -71,6 +72,38 @@ double torque(const Machine& machine, const MachineState& state, std::span<const
   return sum;
 }
 
+/// Factor of a state, and its derivatives by the positions of the axes.
+double factor_at_positions(const Machine& machine, std::size_t state, std::span<const double> positions,
+                           std::span<const double> given, std::vector<double>* by_positions) {
+  assert(positions.size() == machine.axes.size() && (given.empty() || given.size() == machine.states.size()));
+  const MachineState& one = machine.states[state];
+  if (by_positions) by_positions->assign(machine.axes.size(), 0.0);
+  const double value = given.empty() ? std::numeric_limits<double>::quiet_NaN() : given[state];
+  switch (one.kind) {
+    case StateKind::measured:
+    case StateKind::lag:
+      return value - one.reference;
+    case StateKind::approach:
+      return std::isnan(value) ? 0 : value;
+    case StateKind::axis:
+      if (by_positions) (*by_positions)[one.axis] = 1;
+      return positions[one.axis] - one.reference;
+    case StateKind::gravity:
+      return torque(machine, one, positions, by_positions);
+    case StateKind::product:
+      break;
+  }
+  std::vector<double> by_first, by_second;
+  const double first = factor_at_positions(machine, one.first, positions, given, by_positions ? &by_first : nullptr);
+  const double second = factor_at_positions(machine, one.second, positions, given, by_positions ? &by_second : nullptr);
+  if (by_positions) {
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      (*by_positions)[i] = by_first[i] * second + first * by_second[i];
+    }
+  }
+  return first * second;
+}
+
 std::string written_unit(const std::string& unit) {
   if (unit == "degC") return "K";
   return unit == "Nm" ? "N m" : unit;
@@ -121,42 +154,20 @@ bool depends_on_commands(const Machine& machine, std::size_t state) {
   return one.kind == StateKind::axis || one.kind == StateKind::gravity;
 }
 
-double state_factor(const Machine& machine, std::size_t state, std::span<const double> positions,
-                    std::span<const double> given, std::vector<double>* by_positions) {
-  assert(positions.size() == machine.axes.size() && (given.empty() || given.size() == machine.states.size()));
-  const MachineState& one = machine.states[state];
-  if (by_positions) by_positions->assign(machine.axes.size(), 0.0);
-  const double value = given.empty() ? std::numeric_limits<double>::quiet_NaN() : given[state];
-  switch (one.kind) {
-    case StateKind::measured:
-    case StateKind::lag:
-      return value - one.reference;
-    case StateKind::approach:
-      return std::isnan(value) ? 0 : value;
-    case StateKind::axis:
-      if (by_positions) (*by_positions)[one.axis] = 1;
-      return positions[one.axis] - one.reference;
-    case StateKind::gravity:
-      return torque(machine, one, positions, by_positions);
-    case StateKind::product:
-      break;
-  }
-  std::vector<double> by_first, by_second;
-  const double first = state_factor(machine, one.first, positions, given, by_positions ? &by_first : nullptr);
-  const double second = state_factor(machine, one.second, positions, given, by_positions ? &by_second : nullptr);
-  if (by_positions) {
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      (*by_positions)[i] = by_first[i] * second + first * by_second[i];
-    }
-  }
-  return first * second;
+double state_factor(const Machine& machine, std::size_t state, std::span<const double> commands,
+                    std::span<const double> given, std::vector<double>* by_commands) {
+  if (machine.couplings.empty()) return factor_at_positions(machine, state, commands, given, by_commands);
+  const std::vector<double> positions = positions_of_commands(machine, commands);
+  const double factor = factor_at_positions(machine, state, positions, given, by_commands);
+  if (by_commands) slopes_by_commands(machine, by_commands->data());
+  return factor;
 }
 
-std::vector<double> state_factors(const Machine& machine, std::span<const double> positions,
+std::vector<double> state_factors(const Machine& machine, std::span<const double> commands,
                                   std::span<const double> given) {
   std::vector<double> factors;
   for (std::size_t i = 0; i < machine.states.size(); ++i) {
-    factors.push_back(state_factor(machine, i, positions, given));
+    factors.push_back(state_factor(machine, i, commands, given));
   }
   return factors;
 }

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "abbe/runtime/frozen_correction.h"
+#include "abbe/runtime/frozen_couplings.h"
 #include "abbe/runtime/frozen_layout.h"
 
 namespace abbe {
@@ -27,18 +28,20 @@ bool tool_of(const abbe_runtime& machine, const double* given, Triple& tool) {
   return true;
 }
 
-/// Commands with cosines and sines; entries of solved axes are left for solve_point().
+/// Positions with cosines and sines; entries of solved axes are left for solve_point().
 bool load(const abbe_runtime& machine, const double* values, bool but_solved, FrozenCommands& commands) {
   for (std::size_t i = 0; i < machine.axes; ++i) {
     if (but_solved && machine.axis[i].solved != FrozenAxis::kNotSolved) continue;
-    if (!usable(values[i])) return false;
-    set_axis(machine.axis[i], i, values[i], commands);
+    const double position = position_at(machine, values, i);
+    if (!usable(values[i]) || !usable(position)) return false;
+    set_axis(machine.axis[i], i, position, commands);
   }
   return true;
 }
 
 void store(const abbe_runtime& machine, const FrozenCommands& commands, double* values) {
   for (std::size_t i = 0; i < machine.axes; ++i) values[i] = commands.at(i);
+  to_commands(machine, values);
 }
 
 bool within(double value, double from, double to) {
@@ -50,10 +53,12 @@ bool within(double value, double from, double to) {
 int flags(const abbe_runtime& machine, const FrozenCommands& nominal, const FrozenCommands& joints, const Triple& tool,
           double enable) {
   int result = 0;
+  double joint[kFrozenAxes];
+  store(machine, joints, joint);
   for (std::size_t i = 0; i < machine.axes; ++i) {
     const FrozenAxis& axis = machine.axis[i];
     if (enable > 0 && !within(nominal.at(i), axis.map_min, axis.map_max)) result |= ABBE_OUTSIDE_MAP;
-    if (!axis.endless && !within(joints.at(i), axis.travel_min, axis.travel_max)) result |= ABBE_OUTSIDE_TRAVEL;
+    if (!axis.endless && !within(joint[i], axis.travel_min, axis.travel_max)) result |= ABBE_OUTSIDE_TRAVEL;
   }
   // Of a tool of exactly one length the last digit may be another one.
   constexpr double kSpare = 1e-9;
@@ -73,7 +78,7 @@ FrozenCommands started(const abbe_runtime& machine, const abbe_runtime_state* st
     for (std::size_t k = 0; k < choice.count; ++k) {
       const std::size_t i = choice.axis[k];
       const double bound = machine.axis[i].rotary ? machine.largest_turn : largest;
-      const double correction = state->correction[i];
+      const double correction = position_at(machine, state->correction, i);
       if (std::abs(correction) <= bound) move_axis(machine.axis[i], i, from, sign * correction, commands);
     }
   };
@@ -88,6 +93,7 @@ void keep(const abbe_runtime& machine, const FrozenCommands& nominal, const Froz
   // The commands that both have come from are the same but for axes that were solved from the point.
   for (std::size_t i = 0; i < machine.axes; ++i)
     state->correction[i] = (joints.q[i] - nominal.q[i]) + (joints.by[i] - nominal.by[i]);
+  to_commands(machine, state->correction);
   state->iterations = iterations;
 }
 
@@ -229,9 +235,8 @@ int abbe_runtime_uncertainty(const abbe_runtime* runtime, const double* joints, 
   if (runtime->uncertainty.dimensions == 0) return ABBE_NOT_STATED;
   Triple of_tool{};
   if (!tool_of(*runtime, tool, of_tool)) return ABBE_NOT_FINITE;
-  if (!usable(joints, runtime->axes)) return ABBE_NOT_FINITE;
   FrozenCommands commands;
-  for (std::size_t i = 0; i < runtime->axes; ++i) set_axis(runtime->axis[i], i, joints[i], commands);
+  if (!load(*runtime, joints, false, commands)) return ABBE_NOT_FINITE;
   *uncertainty_mm = runtime->uncertainty.at(joints, -dot(of_tool, runtime->tool_direction));
   // The lattice has not all axes and tools: what it leaves out has ends as well.
   return flags(*runtime, commands, commands, of_tool, 1);

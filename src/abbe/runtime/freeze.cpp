@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "abbe/errors/calibrated_machine.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/machine/inverse_plan.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/runtime/abbe_runtime.h"
@@ -105,6 +106,20 @@ void write_axis(const Machine& machine, const ErrorSet& errors, const Calibrated
   out.value(limited(axis.travel_max));
 }
 
+void write_couplings(const Machine& machine, Writer& out) {
+  std::vector<AxisCoupling> couplings = machine.couplings;
+  const CouplingOrder order = coupling_order(machine);
+  const auto place = [&](std::size_t axis) { return std::find(order.axis.begin(), order.axis.end(), axis); };
+  std::stable_sort(couplings.begin(), couplings.end(),
+                   [&](const AxisCoupling& a, const AxisCoupling& b) { return place(a.axis) < place(b.axis); });
+  out.value(static_cast<double>(couplings.size()));
+  for (const AxisCoupling& coupling : couplings) {
+    out.value(static_cast<double>(coupling.axis));
+    out.value(static_cast<double>(coupling.of));
+    out.value(coupling.ratio);
+  }
+}
+
 void write_uncertainty(const UncertaintyLattice& lattice, Writer& out) {
   out.value(static_cast<double>(lattice.dimensions.size()));
   out.value(lattice.largest);
@@ -170,6 +185,30 @@ void state_channels(const Machine& machine, const FrozenStatePlan& plan, const s
   }
 }
 
+/// Couplings with which the calls cannot find the commands: turns come before shifts, and what takes no correction has
+/// to keep its command.
+std::string problem_of_couplings(const Machine& machine) {
+  if (machine.couplings.empty()) return {};
+  if (machine.couplings.size() > frozen::kMostCouplings) return "more than 32 couplings";
+  const Chosen chosen = choose_axes(machine);
+  const auto is_in = [](const std::vector<std::size_t>& list, std::size_t axis) {
+    return std::find(list.begin(), list.end(), axis) != list.end();
+  };
+  for (const AxisCoupling& coupling : machine.couplings) {
+    const bool reaches = is_in(chosen.reaching, coupling.axis), of_reaches = is_in(chosen.reaching, coupling.of);
+    const bool turns = is_in(chosen.turning, coupling.axis), of_turns = is_in(chosen.turning, coupling.of);
+    const std::string &axis = machine.axes[coupling.axis].name, &of = machine.axes[coupling.of].name;
+    if (of_reaches && !reaches) {
+      return axis + " is coupled to " + of + ", which takes the point: a frozen compensation finds it last";
+    }
+    if (!reaches && !turns && of_turns) {
+      return axis + " is coupled to " + of + ", which takes the orientation, but takes no correction itself";
+    }
+    if (std::abs(coupling.ratio) > frozen::kLargestRatio) return "the ratio of " + axis + " to " + of + " is too large";
+  }
+  return {};
+}
+
 std::string problem_of(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options) {
   const std::vector<MachineProblem> problems = find_problems(machine);
   if (!problems.empty()) return problems.front().text();
@@ -181,7 +220,7 @@ std::string problem_of(const Machine& machine, const ErrorSet& errors, const Fre
     return "the covariance is not that of the parameters of the errors";
   }
   if (!(options.tool_length_min <= options.tool_length_max)) return "the range of tool lengths is empty";
-  return {};
+  return problem_of_couplings(machine);
 }
 
 }  // namespace
@@ -200,6 +239,7 @@ FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const 
   write_machine(machine, errors, options, functions.size(), out);
   const CalibratedMachine calibrated = calibrated_machine(machine, constant_locations(errors));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) write_axis(machine, errors, calibrated, i, out);
+  if (!machine.couplings.empty()) write_couplings(machine, out);
   for (const FrozenFunctions& group : functions) out.all(group_values(group));
   if (plan.any()) {
     const std::vector<double> largest = largest_per_unit(machine, errors, plan, options);
@@ -208,6 +248,7 @@ FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const 
     state_channels(machine, plan, largest, result);
   }
   result.format = static_cast<int>(plan.any() ? frozen::kFormatWithStates : frozen::kFormatWithoutStates);
+  if (!machine.couplings.empty()) result.format += static_cast<int>(frozen::kFormatsForCouplings);
   const std::vector<std::vector<double>> ends = corners(machine, plan);
   result.too_many_states = ends.empty() && options.covariance.size() > 0 && !options.covariance.isZero(0);
   const UncertaintyLattice uncertainty = uncertainty_lattice(machine, errors, options, ends);

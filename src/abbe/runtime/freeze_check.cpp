@@ -10,7 +10,9 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/runtime/abbe_runtime_states.h"
+#include "abbe/runtime/frozen_couplings.h"
 #include "abbe/runtime/frozen_layout.h"
 #include "abbe/runtime/frozen_machine.h"
 
@@ -39,8 +41,12 @@ std::vector<Range> ranges_of(const Machine& machine, const ErrorSet& errors, con
     Range range{axis.endless ? -std::numbers::pi : std::max(axis.travel_min, -frozen::kLongest),
                 axis.endless ? std::numbers::pi : std::min(axis.travel_max, frozen::kLongest)};
     const std::array<double, 2> map = map_of(errors, i);
-    if (std::max(range.from, map[0]) <= std::min(range.to, map[1]))
+    if (is_coupled(machine, i) && !axis.endless) {
+      const std::array<double, 2> known = commands_in_map(machine, errors, i);
+      range = {known[0], known[1]};
+    } else if (std::max(range.from, map[0]) <= std::min(range.to, map[1])) {
       range = {std::max(range.from, map[0]), std::min(range.to, map[1])};
+    }
     ranges.push_back(range);
   }
   for (const std::size_t state : plan.given) ranges.push_back({plan.ranges[state].from, plan.ranges[state].to});
@@ -73,7 +79,8 @@ std::vector<double> some_values(const std::vector<Range>& ranges, RandomStream& 
 
 bool within_map(const abbe_runtime& runtime, const std::vector<double>& joints) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (!(joints[i] >= runtime.axis[i].map_min && joints[i] <= runtime.axis[i].map_max)) return false;
+    const double position = position_at(runtime, joints.data(), i);
+    if (!(position >= runtime.axis[i].map_min && position <= runtime.axis[i].map_max)) return false;
   }
   return true;
 }
@@ -168,6 +175,14 @@ std::array<double, 2> map_of(const ErrorSet& errors, std::size_t axis) {
     map[1] = std::min(map[1], basis.to + spare);
   }
   return map;
+}
+
+std::array<double, 2> commands_in_map(const Machine& machine, const ErrorSet& errors, std::size_t axis) {
+  const Axis& one = machine.axes[axis];
+  const std::array<double, 2> map = map_of(errors, axis);
+  const PositionLimits limits = commands_within(machine, axis, {map[0], map[1]});
+  const double from = std::max(one.travel_min, limits.from), to = std::min(one.travel_max, limits.to);
+  return from < to ? std::array<double, 2>{from, to} : std::array<double, 2>{one.travel_min, one.travel_max};
 }
 
 std::vector<Eigen::Vector3d> tools_tried(const Machine& machine, const FreezeOptions& options) {

@@ -12,6 +12,10 @@ namespace abbe {
 /// Positions between which all error motions of an axis are known.
 std::array<double, 2> map_of(const ErrorSet& errors, std::size_t axis);
 
+/// Commands of an axis, within its travel, at which it is in its map wherever the axes stand that it is coupled to; the
+/// travel if there are none. Not of endless axes.
+std::array<double, 2> commands_in_map(const Machine& machine, const ErrorSet& errors, std::size_t axis);
+
 /// How far the tool point moves at most per unit of each given factor, over the poses and tools that are tried and
 /// uphill from there; mm, [factors].
 std::vector<double> largest_per_unit(const Machine& machine, const ErrorSet& errors, const FrozenStatePlan& plan,

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "abbe/errors/error_states.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/runtime/frozen_layout.h"
 #include "abbe/runtime/frozen_states.h"
 
@@ -97,7 +98,8 @@ void add_state(const Machine& machine, const Plan& plan, std::size_t index, std:
     // So far beyond the travel that no correction meets the end.
     const Axis& axis = machine.axes[state.axis];
     const double spare = axis.kind == AxisKind::linear ? 10 : 0.2;
-    range = {std::max(range.from, axis.travel_min - spare), std::min(range.to, axis.travel_max + spare)};
+    const PositionLimits travel = position_limits(machine, state.axis);
+    range = {std::max(range.from, travel.from - spare), std::min(range.to, travel.to + spare)};
   }
   add(range.from);
   add(range.to);

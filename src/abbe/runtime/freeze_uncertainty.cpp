@@ -8,6 +8,8 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/machine/coupling.h"
+#include "abbe/runtime/freeze_check.h"
 
 namespace abbe {
 namespace {
@@ -30,6 +32,10 @@ Dimension dimension_of(const Machine& machine, const ErrorSet& errors, std::size
     d.from = -std::numbers::pi;
     d.to = std::numbers::pi;
     d.is_periodic = true;
+  } else if (is_coupled(machine, axis)) {
+    const std::array<double, 2> known = commands_in_map(machine, errors, axis);
+    d.from = known[0];
+    d.to = known[1];
   } else {
     double from = a.travel_min, to = a.travel_max;
     for (const ErrorMotion& motion : errors.motions) {

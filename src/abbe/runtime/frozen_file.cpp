@@ -8,6 +8,7 @@
 #include <limits>
 #include <new>
 
+#include "abbe/runtime/frozen_couplings.h"
 #include "abbe/runtime/frozen_layout.h"
 #include "abbe/runtime/frozen_pose.h"
 #include "abbe/runtime/frozen_states.h"
@@ -257,6 +258,7 @@ void choose(Values& values, abbe_runtime& m) {
     for (std::size_t t = 0; t < m.turning.count; ++t)
       values.require(m.turning.axis[t] != i, "axes that correct the point");
   }
+  values.require(couplings_can_be_solved(m), "couplings of axes");
   // The point in the world is then found without them.
   values.require(m.solved.count == 0 || m.reaching_linear, "axes that correct the point");
   // By so many errors of direction (point) do the actual derivatives differ from the nominal ones at most, with room
@@ -281,7 +283,9 @@ FrozenFile read_frozen(const unsigned char* bytes, std::size_t size, abbe_runtim
   if (size < kHeaderBytes) return {ABBE_FILE_SHORT, {}};
   const std::uint32_t order = read_at<std::uint32_t>(bytes, kByteOrderAt);
   if (order != kByteOrder) return {order == 0x0d0c0b0aU ? ABBE_FILE_ORDER : ABBE_FILE_FOREIGN, {}};
-  const std::uint32_t format = read_at<std::uint32_t>(bytes, kFormatAt);
+  const std::uint32_t written_format = read_at<std::uint32_t>(bytes, kFormatAt);
+  const bool has_couplings = written_format > kFormatWithStates;
+  const std::uint32_t format = has_couplings ? written_format - kFormatsForCouplings : written_format;
   if (format != kFormatWithStates && format != kFormatWithoutStates) return {ABBE_FILE_VERSION, {}};
   const std::uint64_t count = read_at<std::uint64_t>(bytes, kCountAt);
   const std::size_t present = (size - kHeaderBytes) / 8;
@@ -305,6 +309,7 @@ FrozenFile read_frozen(const unsigned char* bytes, std::size_t size, abbe_runtim
   std::size_t groups = 0;
   read_machine(values, m, groups);
   for (std::size_t i = 0; values.ok() && i < m.axes; ++i) read_axis(values, m.axis[i]);
+  if (values.ok() && has_couplings) read_frozen_couplings(values, m);
   if (values.ok()) choose(values, m);
   std::size_t before = 0;
   for (std::size_t g = 0; values.ok() && g < groups; ++g) {

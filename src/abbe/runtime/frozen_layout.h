@@ -100,6 +100,11 @@ enum DimensionValue : std::size_t {
 //   location errors, in the order of the axes: axis, given factor, factor of the pose, shift, tilt, zero position
 inline constexpr std::uint32_t kFormatWithStates = 3;
 inline constexpr std::uint32_t kFormatWithoutStates = 2;
+// With coupled axes these formats are higher by two. Behind the axes: number of couplings, then of each its axis, the
+// axis whose command it contains, and the ratio; those whose axis others are coupled to come first.
+inline constexpr std::uint32_t kFormatsForCouplings = 2;
+inline constexpr std::size_t kMostCouplings = 32;
+inline constexpr double kLargestRatio = 1e6;
 inline constexpr std::size_t kStateName = 32;
 inline constexpr std::size_t kMostLoads = 64;
 inline constexpr std::size_t kMostBlocks = 256;

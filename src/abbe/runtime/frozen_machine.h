@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "abbe/runtime/abbe_runtime.h"
+#include "abbe/runtime/frozen_layout.h"
 #include "abbe/runtime/frozen_uncertainty.h"
 
 namespace abbe {
@@ -71,6 +72,12 @@ struct FrozenAxis {
   static constexpr std::size_t kNotSolved = 3;
 };
 
+/// Position of `axis` = its command + ratio times the command of `of`.
+struct FrozenCoupling {
+  std::size_t axis = 0, of = 0;
+  double ratio = 0;
+};
+
 struct FrozenStates;
 struct FrozenPosed;
 
@@ -106,5 +113,7 @@ struct abbe_runtime {
   abbe_runtime_information information{};
   const abbe::FrozenStates* states = nullptr;  ///< null: no error depends on one
   const abbe::FrozenPosed* posed = nullptr;    ///< null: no error has a factor that is computed at the pose
-  bool needs_states = false;                   ///< errors depend on given states, which have not been put in
+  std::size_t couplings = 0;
+  std::array<abbe::FrozenCoupling, abbe::frozen::kMostCouplings> coupling;
+  bool needs_states = false;  ///< errors depend on given states, which have not been put in
 };

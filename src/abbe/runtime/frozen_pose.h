@@ -6,8 +6,9 @@
 
 namespace abbe {
 
-/// Commands of all axes with cosines and sines of the rotary ones. What iterations move is kept beside the command that
-/// came in: in the sum of both, after many turns, the steps that are looked for would be lost in rounding.
+/// Positions of all axes (commands, where no axis is coupled) with cosines and sines of the rotary ones. What
+/// iterations move is kept beside the command that came in: in the sum of both, after many turns, the steps that are
+/// looked for would be lost in rounding.
 struct FrozenCommands {
   std::array<double, kFrozenAxes> q;        ///< as given, mm or rad
   std::array<double, kFrozenAxes> in_turn;  ///< rotary: q less whole turns, from -pi to pi; linear: q

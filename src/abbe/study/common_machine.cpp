@@ -9,6 +9,11 @@
 namespace abbe {
 namespace {
 
+bool machine_couplings_differ(const Machine& one, const Machine& other) {
+  return one.couplings.size() != other.couplings.size() ||
+         !std::is_permutation(one.couplings.begin(), one.couplings.end(), other.couplings.begin());
+}
+
 void check_same_axes(const IdentifiedCampaign& first, const IdentifiedCampaign& other) {
   const auto fail = [&](const std::string& problem, const std::string& expected) {
     throw InputError({.file = other.errors_file}, problem, expected);
@@ -24,6 +29,10 @@ void check_same_axes(const IdentifiedCampaign& first, const IdentifiedCampaign& 
       continue;
     }
     fail(fmt::format("axis {} of its machine has another direction or point than in {}", a.name, first.errors_file),
+         "campaigns of one machine, described in the same way; --machine names one description for all");
+  }
+  if (machine_couplings_differ(first.machine, other.machine)) {
+    fail("its machine has other couplings of axes than in " + first.errors_file,
          "campaigns of one machine, described in the same way; --machine names one description for all");
   }
   if (!(first.errors.errors.composition == other.errors.errors.composition)) {

@@ -6,6 +6,7 @@
 
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/parameter_words.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/verify/known_range.h"
 
 namespace abbe {
@@ -117,8 +118,13 @@ class ModelBuilder {
     ErrorSet both;
     for (const TermsOfFile& one : of) both.motions.insert(both.motions.end(), one.terms.begin(), one.terms.end());
     AxisRange range = full_ranges(model_.machine, 2)[axis];
+    if (is_coupled(model_.machine, axis) && !model_.machine.axes[axis].endless) {
+      const PositionLimits limits = position_limits(model_.machine, axis);
+      range.from = limits.from;
+      range.to = limits.to;
+    }
     const double travel = range.to - range.from;
-    narrow_to_known_range(both, axis, range);
+    narrow_to_known_positions(both, axis, range);
     if (!(range.to - range.from > 1e-9 * travel)) {
       const std::string name = error_motion_name(model_.machine, axis, component, state);
       if (std::find(model_.apart.begin(), model_.apart.end(), name) == model_.apart.end()) model_.apart.push_back(name);

@@ -9,6 +9,7 @@
 
 #include "abbe/errors/error_states.h"
 #include "abbe/formats/machine/correction_limits.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/words/corrected_poses_words.h"
@@ -63,7 +64,10 @@ CorrectedCommands correct_commands(const CommandsRequest& request) {
     throw InputError({.field = state_column(request.machine.states[missing])},
                      "the errors depend on this state, and the poses do not give it", "a column with this name");
   }
-  if (request.leave_out_factor != 0) refuse_states(request.machine, request.errors.errors, "what leaves out errors");
+  if (request.leave_out_factor != 0) {
+    refuse_couplings(request.machine, "--leave-out-below-uncertainty", request.machine_file);
+    refuse_states(request.machine, request.errors.errors, "what leaves out errors");
+  }
   check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);
   if (request.workpiece) require_workpiece_temperature(request);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");

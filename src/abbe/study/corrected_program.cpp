@@ -13,6 +13,7 @@
 #include "abbe/errors/reversal.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 
@@ -72,6 +73,7 @@ void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& c
 CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,
                                  const std::function<void(std::string_view text)>& write,
                                  const std::function<void(std::size_t end)>& done, const std::stop_token& stop) {
+  refuse_couplings(request.machine, "a correction of NC programs");
   refuse_states(request.machine, request.errors, "a correction of programs", UsableStates::of_motions);
   if (request.leave_out_factor > 0) {
     refuse_states(request.machine, request.errors, "--leave-out-below-uncertainty");

@@ -14,6 +14,7 @@
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/machine/position_words.h"
@@ -166,8 +167,11 @@ class RobotCorrector {
       return result;
     }
     // Other joints may cross an end of their range: the program then says so. This one is the status of the wrist.
+    const auto is_negative = [&](const std::vector<double>& commands, std::size_t i) {
+      return commands[i] + coupled_part(request_.machine, i, commands.data()) < 0;
+    };
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      if (joints_[i] != 4 || (found.commands[i] < 0) == (result.nominal[i] < 0) ||
+      if (joints_[i] != 4 || is_negative(found.commands, i) == is_negative(result.nominal, i) ||
           position.configuration[4] == std::nullopt)
         continue;
       result.problem = "the correction turns the wrist over: joint 5 passes zero";

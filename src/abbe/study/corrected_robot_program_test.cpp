@@ -117,6 +117,36 @@ TEST(CorrectedRobotPositions, WithoutErrorsEveryByteStays) {
   }
 }
 
+/// A control that counts joint 3 from the horizontal: the same arm and program, the numbers of joint 3 without those of
+/// joint 2. What comes out is the same but for these.
+TEST(CorrectedRobotPositions, CoupledJointsAreThoseOfTheControl) {
+  RobotProgramRequest free = robot_request("arm.ls");
+  for (Axis& axis : free.machine.axes) {
+    if (axis.name == "A3") axis.travel_min = -4, axis.travel_max = 4;
+  }
+  RobotProgramRequest coupled = free;
+  coupled.machine.couplings = {{2, 1, 1.0}};
+  const std::string program = test::replaced(free.program.text, "J3=    30.000", "J3=    50.000");
+  coupled.program = parse_robot_program(program, RobotLanguage::fanuc_ls, "arm.ls");
+  const CorrectedRobotProgram expected = correct_robot_program(free), found = correct_robot_program(coupled);
+  ASSERT_EQ(found.refused, "");
+  ASSERT_EQ(found.positions.size(), expected.positions.size());
+  for (std::size_t k = 0; k < found.positions.size(); ++k) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double part = i == 2 ? found.positions[k].corrected[1] : 0;
+      EXPECT_NEAR(found.positions[k].corrected[i] + part, expected.positions[k].corrected[i], 1e-9) << k << i;
+    }
+  }
+  const RobotProgram before = parse_robot_program(expected.text, RobotLanguage::fanuc_ls, "arm.ls");
+  const RobotProgram after = parse_robot_program(found.text, RobotLanguage::fanuc_ls, "arm.ls");
+  EXPECT_NEAR(after.positions[0].joints[2]->value + after.positions[0].joints[1]->value,
+              before.positions[0].joints[2]->value, 0.0011);
+  for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) {
+    for (std::size_t i = 0; i < 6; ++i)
+      EXPECT_NEAR(after.positions[k].pose[i].value, before.positions[k].pose[i].value, 0.0011);
+  }
+}
+
 TEST(CorrectedRobotPositions, ConfigurationChoosesTheAxes) {
   const CorrectedRobotProgram result = correct_robot_program(robot_request("arm.mod"));
   const double wanted[3][6] = {{20, -30, 40, 10, 50, -20}, {-35, 10, 25, -60, 70, 100}, {60, -20, 60, 30, -45, 15}};

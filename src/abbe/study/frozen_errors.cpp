@@ -6,6 +6,7 @@
 
 #include "abbe/compensate/program/program_uncertainty.h"
 #include "abbe/formats/machine/correction_limits.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/machine/state_option.h"
 #include "abbe/formats/text/input_error.h"
@@ -80,6 +81,7 @@ std::string nothing_reached(const FrozenCompensation& frozen) {
 
 FrozenErrors freeze_errors(const FreezeRequest& request) {
   if (request.leave_out_factor > 0) {
+    refuse_couplings(request.machine, "--leave-out-below-uncertainty");
     refuse_states(request.machine, request.errors.errors, "--leave-out-below-uncertainty");
   }
   check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);

@@ -18,10 +18,10 @@ namespace abbe {
 namespace {
 
 /// Positions of one axis in all readings, sorted, each once.
-std::vector<double> measured_positions(const Campaign& campaign, std::size_t axis) {
+std::vector<double> measured_positions(const Machine& machine, const Campaign& campaign, std::size_t axis) {
   std::vector<double> positions;
   for (const CampaignSetup& setup : campaign.setups) {
-    const std::vector<double>& values = setup.poses().axis[axis];
+    const std::vector<double> values = positions_of_axis(machine, setup.poses(), axis);
     positions.insert(positions.end(), values.begin(), values.end());
   }
   std::sort(positions.begin(), positions.end());
@@ -147,7 +147,7 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
       continue;
     }
     const Axis& axis = study.machine.axes[identified.axis];
-    const std::vector<double> positions = measured_positions(campaign, identified.axis);
+    const std::vector<double> positions = measured_positions(study.machine, campaign, identified.axis);
     ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}, identified.state};
     Basis& basis = motion.basis;
     if (positions.size() < 2) {

@@ -9,6 +9,7 @@
 #include "abbe/errors/error_states.h"
 #include "abbe/identify/parameter_words.h"
 #include "abbe/identify/trust/shown_by.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/study/study_result.h"
 #include "abbe/verify/known_range.h"
 
@@ -46,10 +47,11 @@ ExtendedProblem extended_problem(const Study& study, const StudyResult& result, 
   const Problem& before = result.model.problem;
   std::vector<double> from, to;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    from.push_back(machine.axes[i].travel_min);
-    to.push_back(machine.axes[i].travel_max);
+    const PositionLimits travel = position_limits(machine, i);
+    from.push_back(travel.from);
+    to.push_back(travel.to);
     for (const CampaignSetup& setup : result.campaign.setups) {
-      for (const double position : setup.poses().axis[i]) {
+      for (const double position : positions_of_axis(machine, setup.poses(), i)) {
         from.back() = std::min(from.back(), position);
         to.back() = std::max(to.back(), position);
       }

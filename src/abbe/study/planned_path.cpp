@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "abbe/errors/calibrated_machine.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/machine/axis_unit.h"
 
@@ -15,6 +16,7 @@ namespace {
 
 CalibratedMachine calibrated_for_path(const PathRequest& request) {
   if (!request.errors) return {request.machine, std::vector<double>(request.machine.axes.size(), 0.0), {}};
+  refuse_couplings(request.machine, "a path with errors");
   refuse_states(request.machine, request.errors->errors, "a path");
   CalibratedMachine calibrated = calibrated_machine(request.machine, request.errors->errors);
   if (!calibrated.variable.empty()) {

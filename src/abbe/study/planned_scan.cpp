@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/files/file_name.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/readings/scan_plan_file.h"
 #include "abbe/formats/shapes/closed_part.h"
 #include "abbe/formats/text/input_error.h"
@@ -31,6 +32,7 @@ HalfSpace beyond_plane(const std::array<double, 4>& plane) {
 }
 
 PlannedScan plan_part_scan(const ScanRequest& request, const JobOptions& options) {
+  refuse_couplings(request.machine, "a plan of a scan");
   PlannedScan result;
   result.part = closed_part(request.part, request.part_file);
   const double most = wanted_area(result.part, request.scan.wanted) / (request.scan.along * request.scan.between);

@@ -177,7 +177,7 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
       }
       // Outside the measured range there is no result; a range entirely outside stays, and its poses are left out.
       AxisRange range = study.map->axes[i];
-      if (!range.is_fixed() && narrow_to_known_range(identified, i, range) && range.from < range.to) {
+      if (!range.is_fixed() && narrow_to_known_range(machine, identified, i, range) && range.from < range.to) {
         map.moved.push_back(moved_range_sentence(machine.axes[i], study.map->axes[i], range));
         ranges.push_back(range);
       } else {

@@ -51,11 +51,12 @@ class FittedSetups {
 };
 
 /// Readings of which all axes are where the errors are known.
-std::vector<std::uint8_t> covered_readings(const ErrorSet& errors, const PoseList& poses) {
+std::vector<std::uint8_t> covered_readings(const Machine& machine, const ErrorSet& errors, const PoseList& poses) {
   std::vector<std::uint8_t> covered(poses.count(), 1);
   for (std::size_t axis = 0; axis < poses.axis.size(); ++axis) {
+    const std::vector<double> positions = positions_of_axis(machine, poses, axis);
     for (std::size_t k = 0; k < covered.size(); ++k) {
-      if (!errors.covers(axis, poses.axis[axis][k])) covered[k] = 0;
+      if (!errors.covers(axis, positions[k])) covered[k] = 0;
     }
   }
   return covered;
@@ -172,7 +173,7 @@ VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptio
   const ErrorSet& identified = request.identified.errors;
   std::vector<std::vector<std::uint8_t>> use;
   for (const CampaignSetup& setup : campaign.setups) {
-    use.push_back(covered_readings(identified, setup.poses()));
+    use.push_back(covered_readings(request.study.machine, identified, setup.poses()));
     result.readings += use.back().size();
     result.not_covered += static_cast<std::size_t>(std::count(use.back().begin(), use.back().end(), 0));
   }

@@ -2,9 +2,26 @@
 
 #include <algorithm>
 
+#include "abbe/machine/coupling.h"
+
 namespace abbe {
 
-bool narrow_to_known_range(const ErrorSet& errors, std::size_t axis, AxisRange& range) {
+bool narrow_to_known_range(const Machine& machine, const ErrorSet& errors, std::size_t axis, AxisRange& range) {
+  if (!is_coupled(machine, axis) || machine.axes[axis].endless) return narrow_to_known_positions(errors, axis, range);
+  const PositionLimits limits = position_limits(machine, axis);
+  AxisRange known{.from = limits.from, .to = limits.to};
+  if (!narrow_to_known_positions(errors, axis, known)) return false;
+  const PositionLimits commands = commands_within(machine, axis, {known.from, known.to});
+  const AxisRange narrowed{std::max(range.from, commands.from), std::min(range.to, commands.to), range.count,
+                           range.step};
+  // Where the others alone lead out of the range no commands stay within it: poses are then left out one by one.
+  if (!(narrowed.from < narrowed.to)) return false;
+  const bool changes = narrowed.from != range.from || narrowed.to != range.to;
+  range = narrowed;
+  return changes;
+}
+
+bool narrow_to_known_positions(const ErrorSet& errors, std::size_t axis, AxisRange& range) {
   const double from = range.from, to = range.to;
   for (const ErrorMotion& motion : errors.motions) {
     if (motion.axis != axis || motion.basis.periodic) continue;
@@ -18,7 +35,7 @@ bool narrow_to_known_range(const ErrorSet& errors, std::size_t axis, AxisRange& 
 
 AxisRange known_range(const Machine& machine, const ErrorSet& errors, std::size_t axis, std::size_t count) {
   AxisRange range = full_ranges(machine, count)[axis];
-  narrow_to_known_range(errors, axis, range);
+  narrow_to_known_range(machine, errors, axis, range);
   range.count = range.is_fixed() ? 1 : count;
   return range;
 }

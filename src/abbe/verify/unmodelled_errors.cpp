@@ -37,13 +37,17 @@ struct Covered {
   std::vector<double> from, to;
 };
 
-Covered covered_by(const ErrorSet& model, const PoseSource& poses) {
+Covered covered_by(const Machine& machine, const ErrorSet& model, const PoseSource& poses) {
   Covered covered;
   covered.poses.assign(poses.count, 0);
   std::vector<std::vector<double>> axis(poses.axes, std::vector<double>(poses.count));
   std::vector<double*> pointers;
   for (std::vector<double>& values : axis) pointers.push_back(values.data());
   poses.fill(0, poses.count, pointers.data());
+  if (!machine.couplings.empty()) {
+    const PoseList commands{axis};
+    for (std::size_t i = 0; i < poses.axes; ++i) axis[i] = positions_of_axis(machine, commands, i);
+  }
   covered.from.assign(poses.axes, 0);
   covered.to.assign(poses.axes, 0);
   bool first = true;
@@ -135,7 +139,7 @@ std::vector<UnmodelledError> candidates(const Machine& machine, const ErrorSet& 
 std::vector<UnmodelledError> unmodelled_errors(const Machine& machine, const ErrorSet& model, const PoseSource& poses,
                                                const UnmodelledErrorOptions& options) {
   if (poses.axes != machine.axes.size()) throw std::invalid_argument("unmodelled errors: poses do not fit the machine");
-  const Covered covered = covered_by(model, poses);
+  const Covered covered = covered_by(machine, model, poses);
   std::vector<UnmodelledError> list = candidates(machine, model, covered);
   ErrorSet all = errors_with(machine, model, list, covered.from, covered.to);
   all.set_parameters(std::vector<double>(all.parameter_count(), 0.0));

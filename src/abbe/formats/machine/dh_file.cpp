@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/formats/text/toml_table.h"
@@ -33,10 +34,6 @@ void set_endless(DhJoint& joint) {
 DhJoint read_joint(TomlTable& table, std::size_t index) {
   DhJoint joint;
   joint.kind = table.word_or("kind", 1, {"linear", "rotary"}) == 0 ? AxisKind::linear : AxisKind::rotary;
-  if (table.has("coupled_to")) {
-    table.fail("coupled_to", "coupled joints are not supported: a machine has axes whose commands act independently",
-               "a table of joints that turn each by its own command alone");
-  }
   joint.name = table.text_or("name", joint_name(joint.kind, index));
   joint.a = table.number_or("a", Quantity::length, 0);
   joint.alpha = table.number_or("alpha", Quantity::angle, 0);
@@ -56,8 +53,21 @@ DhJoint read_joint(TomlTable& table, std::size_t index) {
       table.fail_quantity("travel", quantity, "the first limit is not below the second", "[smallest, largest] command");
     }
   }
-  table.finish();
   return joint;
+}
+
+/// Couplings to joints by their names.
+void read_joint_couplings(std::vector<TomlTable>& tables, DhArm& arm) {
+  std::vector<Axis> axes;
+  for (const DhJoint& joint : arm.joints) {
+    axes.emplace_back();
+    axes.back().name = joint.name;
+    axes.back().kind = joint.kind;
+  }
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    read_couplings(tables[i], axes, i, arm.couplings);
+    tables[i].finish();
+  }
 }
 
 /// What makes the machine of an arm unusable, or a machine file that could not be read; empty if nothing does.
@@ -89,11 +99,13 @@ DhArm toml_arm(const std::string& text, const std::string& file) {
       root.word("convention", {"standard", "modified"}) == 0 ? DhConvention::standard : DhConvention::modified;
   arm.workpiece_from_base = read_frame(root, "base");
   arm.last_from_tool = read_frame(root, "tool");
-  for (TomlTable& table : root.tables("joint")) {
+  std::vector<TomlTable> tables = root.tables("joint");
+  for (TomlTable& table : tables) {
     if (arm.joints.size() == kMostJoints) table.fail("", "one joint too many", fmt::format("at most {}", kMostJoints));
     arm.joints.push_back(read_joint(table, arm.joints.size()));
   }
   if (arm.joints.empty()) root.fail("joint", "there is none", "a table [[joint]] for each row");
+  read_joint_couplings(tables, arm);
   root.finish();
   const std::string problem = arm_problem(arm);
   if (!problem.empty()) root.fail("joint", problem);

@@ -99,7 +99,7 @@ TEST(DhFile, MistakesAreNamed) {
   EXPECT_THAT(message("travel_mm = [0, 500]", "travel_mm = [500, 0]"),
               HasSubstr("two.dh.toml:14:1: joint[2].travel_mm: the first limit is not below the second"));
   EXPECT_THAT(message("a_mm = 300", "a = 300"), HasSubstr("joint[1].a"));
-  EXPECT_THAT(message("reversed = true", "coupled_to = \"A2\""), HasSubstr("coupled joints are not supported"));
+  EXPECT_THAT(message("reversed = true", "coupled_to = \"A2\""), HasSubstr("joint[2].coupled_to"));
   EXPECT_THAT(message("reversed = true", "endless = true"), HasSubstr("a linear joint cannot be endless"));
   EXPECT_THAT(message("reversed = true", "name = \"A2\""), HasSubstr("the letter stands for a rotary axis"));
   EXPECT_THAT(message("origin_mm = [0, 0, 100]\n[tool]\nangles_deg = [0, 90, 0]\n[[joint]]\na_mm = 300",

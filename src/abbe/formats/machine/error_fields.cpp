@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "abbe/machine/coupling.h"
+
 namespace abbe {
 namespace {
 
@@ -38,7 +40,8 @@ int smallest_order(const Basis& basis) {
   return basis.periodic ? 4 : 1;
 }
 
-void read_basis_range(TomlTable& table, const Axis& axis, Basis& basis) {
+void read_basis_range(TomlTable& table, const Machine& machine, std::size_t axis_index, Basis& basis) {
+  const Axis& axis = machine.axes[axis_index];
   const Quantity quantity = axis_quantity(axis);
   if (basis.periodic || basis.kind == BasisKind::fourier) {
     if (axis.kind == AxisKind::linear) {
@@ -51,8 +54,9 @@ void read_basis_range(TomlTable& table, const Axis& axis, Basis& basis) {
     }
   }
   if (is_table(basis.kind)) return;
-  basis.from = table.number_or("from", quantity, axis.travel_min);
-  basis.to = table.number_or("to", quantity, axis.travel_max);
+  const PositionLimits travel = position_limits(machine, axis_index);
+  basis.from = table.number_or("from", quantity, travel.from);
+  basis.to = table.number_or("to", quantity, travel.to);
   if (basis.to - basis.from < kSmallestRange) {
     table.fail_quantity(table.has("to", quantity) ? "to" : "from", quantity, "`to` is not above `from`",
                         "the range of positions in which the errors are valid");

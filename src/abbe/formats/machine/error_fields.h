@@ -27,7 +27,7 @@ Basis read_basis_kind(TomlTable& table);
 /// Smallest sensible order of a basis; of a table to be identified the smallest number of intervals.
 int smallest_order(const Basis& basis);
 /// Keys `from`, `to`, `period`; the travel of the axis and a whole turn if they are not there.
-void read_basis_range(TomlTable& table, const Axis& axis, Basis& basis);
+void read_basis_range(TomlTable& table, const Machine& machine, std::size_t axis, Basis& basis);
 
 /// Basis of a motion in TOML, from `basis` to `period`, without nodes.
 std::string basis_text(const Basis& basis, const Axis& axis);

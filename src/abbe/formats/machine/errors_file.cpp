@@ -160,12 +160,11 @@ void read_table(TomlTable& table, const std::filesystem::path& folder, const Mac
 }
 
 void read_values(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, ErrorMotion& motion) {
-  const Axis& axis = machine.axes[motion.axis];
   motion.basis = read_basis_kind(table);
   if (!is_table(motion.basis.kind)) {
     motion.basis.order = static_cast<int>(table.integer("order", smallest_order(motion.basis), kLargestOrder));
   }
-  read_basis_range(table, axis, motion.basis);
+  read_basis_range(table, machine, motion.axis, motion.basis);
   if (is_table(motion.basis.kind)) {
     read_table(table, folder, machine, motion);
   } else {

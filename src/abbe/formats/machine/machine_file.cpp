@@ -8,6 +8,7 @@
 
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/error_fields.h"
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/machine/machine_states.h"
 #include "abbe/formats/text/toml_table.h"
 #include "abbe/formats/text/toml_vector.h"
@@ -49,14 +50,13 @@ void read_travel(TomlTable& table, Axis& axis) {
   }
 }
 
-void read_axis(TomlTable table, Axis& axis) {
+void read_axis(TomlTable& table, Axis& axis) {
   const std::size_t implied = axis.kind == AxisKind::linear ? 0 : 1;
   axis.kind = table.word_or("kind", implied, {"linear", "rotary"}) == 0 ? AxisKind::linear : AxisKind::rotary;
   axis.direction = direction(table, axis.direction);
   if (const auto point = table.optional_numbers("point", Quantity::length, 3)) axis.point = vector_of(*point);
   read_travel(table, axis);
   axis.setting = table.boolean_or("setting", false);
-  table.finish();
 }
 
 void read_workpiece(TomlTable table, Machine& machine) {
@@ -97,7 +97,12 @@ Machine parse_machine(const std::string& text, const std::string& file) {
     if (machine.find_axis(name) != Machine::npos) continue;
     axes.fail(name, fmt::format("the chain has no axis {}", name), "one of " + axis_names(machine));
   }
-  for (Axis& axis : machine.axes) read_axis(axes.table(axis.name), axis);
+  std::vector<TomlTable> tables;
+  for (Axis& axis : machine.axes) read_axis(tables.emplace_back(axes.table(axis.name)), axis);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    read_couplings(tables[i], machine.axes, i, machine.couplings);
+    tables[i].finish();
+  }
   axes.finish();
   if (auto workpiece = root.optional_table("workpiece")) read_workpiece(*workpiece, machine);
   if (auto tool = root.optional_table("tool")) read_tool(*tool, machine);
@@ -123,7 +128,8 @@ std::string machine_text(const Machine& machine) {
   if (machine.gravity != Machine{}.gravity) {
     text += fmt::format("gravity_m_per_s2 = {}\n", vector_text(machine.gravity));
   }
-  for (const Axis& axis : machine.axes) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const Axis& axis = machine.axes[i];
     text += fmt::format("\n[axis.{}]\n", axis.name);
     text += fmt::format("kind = \"{}\"\n", axis.kind == AxisKind::linear ? "linear" : "rotary");
     text += fmt::format("direction = {}\n", vector_text(axis.direction));
@@ -136,6 +142,7 @@ std::string machine_text(const Machine& machine) {
       text += toml_angles("travel", {axis.travel_min, axis.travel_max});
     }
     if (axis.setting) text += "setting = true\n";
+    text += couplings_text(machine, i);
   }
   const Eigen::Vector3d angles = error_angles_from_rotation(machine.bed_from_workpiece.rotation);
   text += fmt::format("\n[workpiece]\norigin_mm = {}\n", vector_text(machine.bed_from_workpiece.translation));

@@ -99,7 +99,7 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
       IdentifiedMotion motion{axis, component, basis, smallest_tried, state, optional};
       // A table to be identified has no nodes yet, but a range like a spline, over which they will stand evenly.
       motion.basis.kind = is_table(basis.kind) ? BasisKind::bspline : basis.kind;
-      read_basis_range(table, machine.axes[axis], motion.basis);
+      read_basis_range(table, machine, axis, motion.basis);
       motion.basis.kind = basis.kind;
       motions.push_back(std::move(motion));
     }

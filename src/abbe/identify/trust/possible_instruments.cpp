@@ -104,11 +104,7 @@ class FurtherInstruments {
     return random.uniform(ranges_[axis].from, ranges_[axis].to);
   }
 
-  bool covered(const std::vector<double>& pose) const {
-    for (std::size_t i = 0; i < pose.size(); ++i)
-      if (!problem_.errors.covers(i, pose[i])) return false;
-    return true;
-  }
+  bool covered(const std::vector<double>& pose) const { return covers_commands(machine_, problem_.errors, pose); }
 
   void add_trial(std::string words, const std::shared_ptr<const Instrument>& device,
                  const InstrumentReadings& planned) {

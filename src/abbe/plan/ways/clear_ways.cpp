@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/geometry/surface/mesh_check.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/plan/ways/linear_motion.h"
 
 namespace abbe {
@@ -56,16 +57,17 @@ ClearWays::ClearWays(const Machine& machine, const std::vector<Obstacle>& obstac
 
 ClearWays::Stand ClearWays::stand(const std::vector<double>& pose) const {
   Stand stand;
+  const std::vector<double> position = positions_of_commands(machine_, pose);
   const std::size_t workpiece_side = machine_.workpiece_axis_count();
   RigidTransform at;
   for (std::size_t i = workpiece_side; i-- > 0;) {
     stand.base[i] = at;
-    at = stand.carried[i] = at * nominal_motion(machine_.axes[i], pose[i]);
+    at = stand.carried[i] = at * nominal_motion(machine_.axes[i], position[i]);
   }
   at = {};
   for (std::size_t i = workpiece_side; i < machine_.axes.size(); ++i) {
     stand.base[i] = at;
-    at = stand.carried[i] = at * nominal_motion(machine_.axes[i], pose[i]);
+    at = stand.carried[i] = at * nominal_motion(machine_.axes[i], position[i]);
   }
   stand.point = at * (machine_.tool_reference + machine_.tool_offset).eval();
   stand.direction = at.rotation * machine_.tool_direction;
@@ -77,12 +79,13 @@ std::optional<WayCollision> ClearWays::piece(const std::vector<double>& from, co
   const double middle = 0.5 * (begin + end);
   const std::vector<double> pose = between(from, to, middle);
   const Stand at = stand(pose);
+  const std::vector<double> begins = positions_of_commands(machine_, from), ends = positions_of_commands(machine_, to);
   const Eigen::Vector3d far_end = at.point + tool_.length * at.direction;
   // What all axes from one on, to the tool, move the tool's line over half of the piece.
   std::array<double, kMaxAxes + 1> moved{};
   for (std::size_t i = machine_.axes.size(); i-- > 0;) {
     const Axis& axis = machine_.axes[i];
-    const double motion = 0.5 * (end - begin) * std::abs(to[i] - from[i]);
+    const double motion = 0.5 * (end - begin) * std::abs(ends[i] - begins[i]);
     double reach = 1;
     if (axis.kind == AxisKind::rotary) {
       const Eigen::Vector3d on_line = at.base[i] * axis.point, direction = at.base[i].rotation * axis.direction;

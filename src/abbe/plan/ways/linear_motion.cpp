@@ -3,10 +3,13 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "abbe/machine/coupling.h"
+
 namespace abbe {
 
 std::optional<std::vector<double>> moved_linearly(const Machine& machine, const std::vector<double>& pose,
                                                   const Eigen::Vector3d& displacement) {
+  const std::vector<double> positions = positions_of_commands(machine, pose);
   // Motion of the tool over the workpiece per mm of each linear axis.
   std::vector<Eigen::Vector3d> motion(pose.size(), Eigen::Vector3d::Zero());
   // A direction that no axis has gets this instead of zero, so that the matrix can be inverted.
@@ -15,7 +18,7 @@ std::optional<std::vector<double>> moved_linearly(const Machine& machine, const 
   const auto take = [&](std::size_t i, Eigen::Matrix3d& turned) {
     const Axis& axis = machine.axes[i];
     if (axis.kind == AxisKind::rotary) {
-      turned = turned * nominal_motion(axis, pose[i]).rotation;
+      turned = turned * nominal_motion(axis, positions[i]).rotation;
     } else if (!axis.setting) {
       motion[i] = (axis.side == ChainSide::tool ? 1 : -1) * axis.sense() * (turned * axis.direction);
       all += motion[i] * motion[i].transpose();
@@ -29,7 +32,7 @@ std::optional<std::vector<double>> moved_linearly(const Machine& machine, const 
 
   const Eigen::Vector3d share = all.inverse() * displacement;
   Eigen::Vector3d reached = Eigen::Vector3d::Zero();
-  std::vector<double> moved = pose;
+  std::vector<double> moved = positions;
   for (std::size_t i = 0; i < pose.size(); ++i) {
     const double length = motion[i].dot(share);
     // What rounding leaves of an axis across the way is no motion.
@@ -38,7 +41,10 @@ std::optional<std::vector<double>> moved_linearly(const Machine& machine, const 
     reached += length * motion[i];
   }
   if ((reached - displacement).norm() > 1e-6 * displacement.norm()) return std::nullopt;
-  return moved;
+  if (machine.couplings.empty()) return moved;
+  std::vector<double> commands(pose.size());
+  commands_of_positions(machine, moved.data(), commands.data());
+  return commands;
 }
 
 }  // namespace abbe

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/text/vector_json.h"
 #include "abbe/machine/axis_unit.h"
 
@@ -25,6 +26,12 @@ nlohmann::ordered_json axis_json(const Axis& axis) {
   return json;
 }
 
+void add_couplings(const Machine& machine, std::size_t axis, nlohmann::ordered_json& json) {
+  for (const WrittenCoupling& coupling : written_couplings(machine, axis)) {
+    for (const auto& ratio : coupling.ratios) json[coupling.key][ratio.of] = ratio.value;
+  }
+}
+
 nlohmann::ordered_json report_machine(const Machine& machine) {
   nlohmann::ordered_json json;
   json["name"] = machine.name;
@@ -35,12 +42,14 @@ nlohmann::ordered_json report_machine(const Machine& machine) {
   json["tool_direction"] = vector_json(machine.tool_direction);
   json["workpiece_origin_mm"] = vector_json(machine.bed_from_workpiece.translation);
   json["axes"] = nlohmann::ordered_json::array();
-  for (const Axis& axis : machine.axes) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const Axis& axis = machine.axes[i];
     nlohmann::ordered_json entry = axis_json(axis);
     const double unit = position_unit(axis);
     entry[std::string("travel_min_") + position_suffix(axis)] = axis.travel_min / unit;
     entry[std::string("travel_max_") + position_suffix(axis)] = axis.travel_max / unit;
     if (axis.kind == AxisKind::rotary) entry["endless"] = axis.endless;
+    add_couplings(machine, i, entry);
     json["axes"].push_back(entry);
   }
   return json;

@@ -7,6 +7,7 @@
 
 #include "abbe/errors/error_set.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/machine/coupling.h"
 #include "abbe/machine/drawing.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/report/evaluations/machine_json.h"
@@ -59,6 +60,7 @@ nlohmann::ordered_json machine_check_json(const Machine& machine) {
       const double unit = position_unit(axis);
       entry[std::string("travel_") + position_suffix(axis)] = {axis.travel_min / unit, axis.travel_max / unit};
     }
+    add_couplings(machine, i, entry);
     entry["error_motions"] = motion_names(machine, i);
     entry["location_errors"] = location_names(machine, i);
     json["axes"].push_back(entry);
@@ -79,6 +81,10 @@ std::string machine_check_text(const Machine& machine) {
                         axis.kind == AxisKind::rotary ? "rotary" : "linear",
                         axis.side == ChainSide::workpiece ? "workpiece" : "tool", triple(axis.direction),
                         triple(axis.point), travel_text(axis));
+  }
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::string formula = position_formula(machine, i);
+    if (!formula.empty()) text += fmt::format("position of {}\n", formula);
   }
   std::size_t motions = 0, locations = 0;
   text += "\nerror motions (ISO 230-1, ISO 230-7) and location errors\n";
