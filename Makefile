@@ -8,7 +8,8 @@
 #   make test      set-up, unit and quick tests, those of Python, the most important ones under the sanitizers, short fuzzing
 #   make long      the other tests: LinuxCNC, published studies, simulated campaigns, notebooks, most pages, the site
 #   make sanitize  all quick tests under the sanitizers
-#   make sanitize-libraries  of them, those of the libraries; continuous integration runs make test, make long and this
+#   make sanitize-libraries  of them, those of the libraries
+#   make warnings  GCC's optimised build with its warnings as errors; the development build is clang's
 #   make python    set-up, the Python package and its tests
 #   make site      set-up, documentation and reference of the Python package as a site: build/site/index.html
 #   make unit      build and run the tests of single folders
@@ -27,7 +28,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop thermal-day test long sanitize sanitize-libraries python site unit quick lint format bench bench-python fuzz coverage package package-test install install-linuxcnc clean
+.PHONY: build demo closed-loop thermal-day test long sanitize sanitize-libraries warnings python site unit quick lint format bench bench-python fuzz coverage package package-test install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -123,6 +124,11 @@ sanitize-libraries:
 	@.ci/build --target abbe_libraries_tests --expect $(SANITIZE_MINUTES) "make $@ builds the libraries with the sanitizers and runs their tests" \
 	  asan -DABBE_WERROR=ON
 	@ctest --preset asan-libraries -j $(JOBS)
+
+# The release build in a folder of its own, so that the one of make demo keeps its options.
+warnings:
+	@.ci/set-up build
+	@.ci/build --expect $(BUILD_MINUTES) "make $@ builds all with GCC, optimised" gcc -DABBE_WERROR=ON
 
 # In the folder of the development build, configured as by make test.
 python:

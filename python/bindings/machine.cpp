@@ -202,10 +202,11 @@ void bind_machine(nb::module_& module) {
             return names;
           },
           "Names of the axes in the order of the chain.")
-      .def_prop_rw("couplings", &couplings, &set_couplings,
-                   "What positions of axes contain of the commands of others: (axis, other axis, ratio) with\n"
-                   "position = command + ratio times command of the other. Ratios are numbers between axes of one kind,\n"
-                   "else mm per rad or rad per mm. Raises KeyError for a name that is no axis.")
+      .def_prop_rw(
+          "couplings", &couplings, &set_couplings,
+          "What positions of axes contain of the commands of others: (axis, other axis, ratio) with\n"
+          "position = command + ratio times command of the other. Ratios are numbers between axes of one kind,\n"
+          "else mm per rad or rad per mm. Raises KeyError for a name that is no axis.")
       .def_prop_rw(
           "tool_reference_mm", [](const Machine& machine) { return machine.tool_reference; },
           [](Machine& machine, const Triple& value) { machine.tool_reference = vector(value); },
