@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -16,7 +17,7 @@ namespace {
 using testing::AnyOf;
 using testing::HasSubstr;
 
-const char* const kMill = R"(name = "mill"
+const char* const kMillOfStates = R"(name = "mill"
 chain = "w b X Y Z t"
 [axis.X]
 travel_mm = [0, 600]
@@ -27,7 +28,6 @@ travel_mm = [0, 300]
 [state.hall]
 kind = "measured"
 unit = "degC"
-reference = 20
 [state.ram]
 kind = "axis"
 axis = "Z"
@@ -37,7 +37,7 @@ kind = "approach"
 axis = "X"
 )";
 
-std::string legendre(const char* name, const char* state, const char* values) {
+std::string line_motion(const char* name, const char* state, const char* values) {
   const std::string of = *state == '\0' ? "" : std::string("state = \"") + state + "\"\n";
   return std::string("[[motion]]\nname = \"") + name + "\"\n" + of +
          "basis = \"legendre\"\norder = 1\ncoefficients_um = " + values + "\nstandard_uncertainty_um = [0.1, 0.1]\n";
@@ -45,23 +45,23 @@ std::string legendre(const char* name, const char* state, const char* values) {
 
 /// Errors in length only: the tool is displaced by their sum.
 std::string computed_errors() {
-  return legendre("EXX", "", "[0, 12]") + legendre("EZX", "ram", "[0.05, 0.03]") + legendre("EYX", "side", "[3, 1]") +
-         legendre("EYY", "ram", "[0, -0.04]");
+  return line_motion("EXX", "", "[0, 12]") + line_motion("EZX", "ram", "[0.05, 0.03]") +
+         line_motion("EYX", "side", "[3, 1]") + line_motion("EYY", "ram", "[0, -0.04]");
 }
 
 std::string measured_errors(double per_kelvin) {
-  return legendre("EXX", "", "[0, 12]") + legendre("EYY", "", "[0, 5]") +
-         legendre("EXX", "hall", ("[0, " + std::to_string(per_kelvin) + "]").c_str());
+  return line_motion("EXX", "", "[0, 12]") + line_motion("EYY", "", "[0, 5]") +
+         line_motion("EXX", "hall", ("[0, " + std::to_string(per_kelvin) + "]").c_str());
 }
 
-const char* const kCovered = "[covered]\nhall_degC = [18, 27]\n";
+const char* const kCoveredHall = "[covered]\nhall_degC = [18, 27]\n";
 
 class StateUses : public CommandTest {
  protected:
   void SetUp() override {
-    folder.write("mill.machine.toml", kMill);
+    folder.write("mill.machine.toml", kMillOfStates);
     folder.write("computed.errors.toml", computed_errors());
-    folder.write("warm.errors.toml", measured_errors(2) + kCovered);
+    folder.write("warm.errors.toml", measured_errors(2) + kCoveredHall);
     folder.write("part.ngc",
                  "G21 G90 G17\nG0 X10 Y10 Z200\nG1 X500 Y350 Z100 F2000\nG1 X20 Y300 Z20\nG1 X400 Y50 Z250\nM2\n");
     folder.write("poses.csv", "X_mm,Y_mm,Z_mm\n10,20,30\n590,390,290\n");
@@ -76,13 +76,13 @@ class StateUses : public CommandTest {
   }
 };
 
-using Place = std::array<double, 3>;
+using ToolPlace = std::array<double, 3>;
 
 /// Ends of the moves of a program in X, Y and Z, words that are left out included.
-std::vector<Place> ends_of(const std::string& program) {
-  std::vector<Place> ends;
+std::vector<ToolPlace> ends_of_moves(const std::string& program) {
+  std::vector<ToolPlace> ends;
   std::istringstream lines(program);
-  Place at{};
+  ToolPlace at{};
   for (std::string line; std::getline(lines, line);) {
     bool moves = false;
     std::istringstream words(line);
@@ -98,43 +98,43 @@ std::vector<Place> ends_of(const std::string& program) {
 }
 
 /// Where the tool of the machine with computed_errors() is, by hand.
-Place actual(const Place& q, double side) {
+ToolPlace tool_with_states(const ToolPlace& q, double side) {
   const double x = (q[0] - 300) / 300, y = (q[1] - 200) / 200, ram = q[2] - 100;
   return {q[0] + 1e-3 * 12 * x, q[1] + 1e-3 * side * (3 + x) - 1e-3 * 0.04 * y * ram,
           q[2] + 1e-3 * (0.05 + 0.03 * x) * ram};
 }
 
-double distance(const Place& a, const Place& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+double way_between(const ToolPlace& a, const ToolPlace& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 TEST_F(StateUses, ProgramsAreCorrectedForStatesThatFollowFromTheirMotions) {
   const CommandResult result =
       run({"compensate", "gcode", "part.ngc", "-o", "out.ngc", "--decimals", "9", "--json"}, "computed");
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["not_proven"]["count"], 0);
-  const std::vector<Place> ends = ends_of(folder.read("out.ngc"));
-  const std::vector<Place> wanted = {{500, 350, 100}, {20, 300, 20}, {400, 50, 250}};
+  const std::vector<ToolPlace> ends = ends_of_moves(folder.read("out.ngc"));
+  const std::vector<ToolPlace> wanted = {{500, 350, 100}, {20, 300, 20}, {400, 50, 250}};
   const std::array<double, 3> side = {1, -1, 1};  // from which X comes
   std::size_t next = 0, take_ups = 0;
-  Place from = {10, 10, 200};
-  for (const Place& end : ends) {
+  ToolPlace from = {10, 10, 200};
+  for (const ToolPlace& end : ends) {
     if (next == wanted.size()) break;
     // On the line of the move, but for the few micrometres where X turns round.
-    const Place& to = wanted[next];
-    const Place at = actual(end, side[next]);
+    const ToolPlace& to = wanted[next];
+    const ToolPlace at = tool_with_states(end, side[next]);
     double share = 0, square = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       share += (at[i] - from[i]) * (to[i] - from[i]);
       square += (to[i] - from[i]) * (to[i] - from[i]);
     }
     share /= square;
-    const Place on_line = {from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]),
-                           from[2] + share * (to[2] - from[2])};
+    const ToolPlace on_line = {from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]),
+                               from[2] + share * (to[2] - from[2])};
     if (share > 1e-4) {
-      EXPECT_LE(distance(at, on_line), 1e-6) << "move " << next;
+      EXPECT_LE(way_between(at, on_line), 1e-6) << "move " << next;
     } else {
       ++take_ups;
     }
-    if (distance(at, to) > 1e-6) continue;
+    if (way_between(at, to) > 1e-6) continue;
     from = to;
     ++next;
   }
@@ -201,7 +201,7 @@ TEST_F(StateUses, ReadingsAreVerifiedAtTheirOwnStates) {
   const CommandResult own = verified("new.study.toml", {});
   EXPECT_EQ(own.exit_code, ExitCode::done) << own.err << own.out;
   // The same errors without their states explain much less of the same readings.
-  folder.write("cold.errors.toml", legendre("EXX", "", "[0, 12]") + legendre("EYY", "", "[0, 5]"));
+  folder.write("cold.errors.toml", line_motion("EXX", "", "[0, 12]") + line_motion("EYY", "", "[0, 5]"));
   const CommandResult cold = abbe({"verify", "--readings", "new.study.toml", "--errors", "cold.errors.toml", "--json"});
   EXPECT_EQ(cold.exit_code, ExitCode::computation_says_no);
   const CommandResult twice = verified("new.study.toml", {"--state", "hall_degC=22"});
@@ -214,7 +214,7 @@ TEST_F(StateUses, ReadingsAreVerifiedAtTheirOwnStates) {
   EXPECT_EQ(verified("new.study.toml", {"--accept-uncovered"}).exit_code, ExitCode::done);
 
   // Readings that do not say how warm it was.
-  folder.write("at24.errors.toml", legendre("EXX", "", "[0, 20]") + legendre("EYY", "", "[0, 5]"));
+  folder.write("at24.errors.toml", line_motion("EXX", "", "[0, 20]") + line_motion("EYY", "", "[0, 5]"));
   study("plain.study.toml", "[simulate]\nerrors = \"at24.errors.toml\"\n",
         "[[setup.plan]]\nkind = \"poses\"\nfile = \"plain-poses.csv\"\n");
   const CommandResult cool = abbe({"simulate", "plain.study.toml", "-o", "plain"});
@@ -240,21 +240,36 @@ TEST_F(StateUses, CampaignsAreComparedByWhatChangesWithTheState) {
   EXPECT_THAT(at_reference.out, HasSubstr("EXX*hall"));
   EXPECT_THAT(at_reference.out, HasSubstr("hall_degC = 20"));
   const auto largest = [](const CommandResult& result) {
-    for (const nlohmann::json& figure : nlohmann::json::parse(result.out)["figures"]) {
-      if (figure["symbol"] == "V_max") return figure["value"].get<double>();
-    }
-    return -1.0;
+    return nlohmann::json::parse(result.out)["figures"]["V_max"];
   };
-  EXPECT_NEAR(largest(at_reference), 0, 1e-9);
+  EXPECT_NEAR(largest(at_reference)["value_um"].get<double>(), 0, 1e-9);
+  // 5 K at 2 um/K more; u of the slopes of EXX, EXX*hall and EYY 0.1 um in either campaign.
   const CommandResult warm = compared({"--state", "hall_degC=25"});
   ASSERT_EQ(warm.exit_code, ExitCode::done) << warm.err;
-  EXPECT_GT(largest(warm), 1);
+  EXPECT_NEAR(largest(warm)["value_um"].get<double>(), 10, 1e-6);
+  EXPECT_NEAR(largest(warm)["expanded_uncertainty_um"].get<double>(), 2 * std::sqrt(2 * 0.01 * (1 + 25 + 1)), 1e-2);
   EXPECT_EQ(compared({"--state", "hall_degC=31"}).exit_code, ExitCode::computation_says_no);
+
+  // Results of machines that mean something else by the same name.
+  const auto results = [&](const std::string& name, const std::string& machine, double per_kelvin) {
+    std::filesystem::create_directories(folder.path() / name);
+    folder.write(name + "/machine.toml", machine);
+    folder.write(name + "/errors.toml", measured_errors(per_kelvin));
+    folder.write(name + "/summary.json", "{}");
+  };
+  std::string other = kMillOfStates;
+  const std::string unit = "unit = \"degC\"\n";
+  other.insert(other.find(unit) + unit.size(), "reference_degC = 22\n");
+  results("march", kMillOfStates, 2);
+  results("june", other, 2);
+  const CommandResult differ = abbe({"compare", "march", "june"});
+  EXPECT_EQ(differ.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(differ.err, HasSubstr("state.hall: hall has the reference 22 instead of 20 (in march/errors.toml)"));
 }
 
 /// Every command that takes errors, with errors that depend on a measured state and on the commands.
 TEST_F(StateUses, NoCommandOverlooksAState) {
-  folder.write("both.errors.toml", computed_errors() + legendre("EXX", "hall", "[0, 2]"));
+  folder.write("both.errors.toml", computed_errors() + line_motion("EXX", "hall", "[0, 2]"));
   folder.write("curve.csv", "x_mm,y_mm,z_mm,i,j,k\n10,10,10,0,0,1\n20,10,10,0,0,1\n");
   folder.write("scan.csv", "X_mm,Y_mm,Z_mm,distance_mm\n10,10,10,1\n");
   const std::vector<std::vector<std::string>> commands = {
