@@ -206,8 +206,7 @@ struct TermModels::Implementation {
 TermModels::TermModels(const Problem& problem, const std::vector<CandidateTerm>& candidates,
                        const std::vector<TimeBlocks>& blocks, const TermSelectionOptions& options) {
   const Eigen::VectorXd start = present_values(problem);
-  implementation_ =
-      std::make_unique<Implementation>(TermSearch(problem, candidates, blocks, options, false), TermSelection());
+  implementation_.reset(new Implementation{TermSearch(problem, candidates, blocks, options, false), {}});
   implementation_->base = implementation_->search.result;
   set_observations(problem, start);
 }

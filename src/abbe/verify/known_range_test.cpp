@@ -45,12 +45,12 @@ TEST(KnownRange, IsTheTravelWithoutErrorMotionsAndWithThoseThatHoldEverywhere) {
   for (const double to : {kWholeTurn, 3 * kWholeTurn}) {
     const Basis turns{.kind = BasisKind::fourier, .order = 2, .from = 0, .to = to, .period = kWholeTurn};
     AxisRange whole = travel;
-    EXPECT_FALSE(narrow_to_known_range(known_over(0, turns), 0, whole));
+    EXPECT_FALSE(narrow_to_known_range(machine, known_over(0, turns), 0, whole));
     EXPECT_EQ(whole.to, travel.to);
   }
   const Basis half{.kind = BasisKind::fourier, .order = 2, .from = 0, .to = kWholeTurn / 2, .period = kWholeTurn};
   AxisRange narrowed = travel;
-  EXPECT_TRUE(narrow_to_known_range(known_over(0, half), 0, narrowed));
+  EXPECT_TRUE(narrow_to_known_range(machine, known_over(0, half), 0, narrowed));
   EXPECT_EQ(narrowed.to, kWholeTurn / 2);
 }
 
