@@ -58,7 +58,8 @@ TEST(CompensatedArm, EveryPoseAwayFromSingularitiesIsReachedWhole) {
         EXPECT_LE((after.translation - wanted.translation).norm(), 1e-6);
         EXPECT_LE(missed_turn(wanted, after), 1e-9);
       }
-      if (margin_at(machine, poses.pose(k)) < 0.02) continue;
+      // The margin is one of positions; commands of coupled axes turn by more than these, and their turn is bounded.
+      if (margin_at(machine, poses.pose(k)) < (machine.couplings.empty() ? 0.02 : 0.04)) continue;
       ++regular;
       EXPECT_EQ(corrected.status[k], CorrectionStatus::reached) << k;
     }

@@ -81,7 +81,11 @@ TargetKind pose_target(const Machine& machine, const std::vector<HeldAxis>& kept
   const WorkingAxes whole = working_axes(machine, TargetKind::full_pose, kept);
   if (whole.is_inverted) return TargetKind::full_pose;
   const WorkingAxes part = working_axes(machine, TargetKind::point_and_direction, kept);
-  return !part.arm.empty() && !part.is_inverted ? TargetKind::full_pose : TargetKind::point_and_direction;
+  if (part.arm.empty() || part.is_inverted) return TargetKind::point_and_direction;
+  // With three linear axes it is a machine tool, one of whose rotary axes is coupled to a linear one.
+  const auto linear = std::count_if(part.arm.begin(), part.arm.end(),
+                                    [&](std::size_t i) { return machine.axes[i].kind == AxisKind::linear; });
+  return linear < 3 ? TargetKind::full_pose : TargetKind::point_and_direction;
 }
 
 }  // namespace abbe
