@@ -12,6 +12,7 @@
 #include "abbe/formats/files/empty_folder_for_test.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/study/study_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/study/run_study.h"
 
 namespace abbe {
