@@ -234,8 +234,8 @@ def urdf_text(robot: Robot) -> str:
     """
     machine = robot.machine
     if machine.couplings:
-        axis, other, _ = machine.couplings[0]
-        raise _refuse(axis, f"is coupled to {other}, and joints of a URDF act independently", "axes without couplings")
+        coupled, other, _ = machine.couplings[0]
+        raise _refuse(coupled, f"is coupled to {other}, and joints of a URDF act independently", "axes without couplings")
     root = ElementTree.Element("robot", name=machine.name or "robot")
     ElementTree.SubElement(root, "link", name="base")
     before = numpy.zeros(3)

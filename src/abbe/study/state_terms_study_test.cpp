@@ -78,9 +78,9 @@ std::filesystem::path warm_folder(const char* name) {
   RandomStream random(12);
   for (int k = 0; k < 160; ++k) {
     const double t = k / 20.0, x = k % 53 == 0 ? 0 : k % 53 == 1 ? 600 : random.uniform(0, 600);
-    poses << fmt::format("{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n", 180 * k, x, random.uniform(0, 400),
-                         random.uniform(0, 300), 22 + 3 * std::sin(0.8 * t), 21 + 4 * (1 - std::exp(-t / 2)),
-                         20 + 2 * std::sin(1.7 * t + 1));
+    const double z = random.uniform(0, 300), y = random.uniform(0, 400);
+    poses << fmt::format("{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n", 180 * k, x, y, z, 22 + 3 * std::sin(0.8 * t),
+                         21 + 4 * (1 - std::exp(-t / 2)), 20 + 2 * std::sin(1.7 * t + 1));
   }
   return folder;
 }
@@ -349,11 +349,9 @@ TEST(StateTerms, CampaignsAtDifferentTemperaturesTogetherFindGrowthThatNeitherFi
     poses << "time_s,X_mm,Y_mm,Z_mm\n";
     RandomStream random(4);
     for (int k = 0; k < 60; ++k) {
-      poses << fmt::format("{},{:.3f},{:.3f},{:.3f}\n", 120 * k,
-                           k == 0   ? 0
-                           : k == 1 ? 600
-                                    : random.uniform(0, 600),
-                           random.uniform(0, 400), random.uniform(0, 300));
+      const double z = random.uniform(0, 300), y = random.uniform(0, 400);
+      const double x = k == 0 ? 0 : k == 1 ? 600 : random.uniform(0, 600);
+      poses << fmt::format("{},{:.3f},{:.3f},{:.3f}\n", 120 * k, x, y, z);
     }
   }
   const auto number = [](const Identification& found, const std::string& name, bool uncertainty) {

@@ -52,7 +52,7 @@ TEST(MachineCouplings, WrittenMachinesReadBackTheSame) {
   }
   EXPECT_THAT(machine_text(parse_machine(kCoupledMachine, "a.machine.toml")),
               HasSubstr("coupled = { A2 = -1, A1 = 0.015625 }\ncoupled_deg_per_mm = { Z = 0.1 }\n"));
-  EXPECT_THAT(machine_text(test::coupled_fork_head()), HasSubstr("coupled_mm_per_rad = { A = 3 }\n"));
+  EXPECT_THAT(machine_text(test::coupled_fork_head()), HasSubstr("coupled_mm_per_deg = { A = 0.05235987755982989 }\n"));
 }
 
 TEST(MachineCouplings, MistakesAreNamed) {
@@ -64,7 +64,7 @@ TEST(MachineCouplings, MistakesAreNamed) {
   EXPECT_THAT(message("coupled = { A2 = -1", "coupled = { Z = -1"),
               HasSubstr("axis.A3.coupled.Z: Z is a linear axis; expected the key coupled_deg_per_mm for it"));
   EXPECT_THAT(message("{ A1 = 0.25 }", "{ A3 = 0.25 }"), HasSubstr("the couplings go round: each of Z, A3 needs"));
-  EXPECT_THAT(message("A2 = -1", "A3 = -1"), HasSubstr("axis A3: coupled: is coupled to itself"));
+  EXPECT_THAT(message("A2 = -1", "A3 = -1"), HasSubstr("a.machine.toml:11:7: axis.A3: is coupled to itself"));
   EXPECT_THAT(message("A2 = -1", "A2 = 0"), HasSubstr("the ratio to A2 is 0"));
   EXPECT_THAT(message("A2 = -1", "A2 = \"1\""), HasSubstr("axis.A3.coupled.A2"));
   EXPECT_THAT(message("coupled = {", "coupled_deg = {"), HasSubstr("axis.A3.coupled_deg"));

@@ -31,18 +31,21 @@ std::vector<std::string> blocks(const std::string& kind, const char* page = "for
 
 TEST(DocumentedExamples, AreAccepted) {
   const std::vector<std::string> toml = blocks("toml"), csv = blocks("csv");
-  ASSERT_EQ(toml.size(), 6U);
+  ASSERT_EQ(toml.size(), 7U);
   ASSERT_EQ(csv.size(), 3U);
   const Machine machine = parse_machine(toml[0], "machine");
   EXPECT_EQ(machine.chain(), "w C' X' b Z t");
-  const std::string column = "name = \"column\"\nchain = \"w X' b Z A t\"\n" + toml[1] +
+  const std::string arm = "name = \"arm\"\nchain = \"w b A1 A2 A3 t\"\n" + toml[1] +
+                          "[axis.A1]\ntravel_deg = [-90, 90]\n[axis.A2]\ntravel_deg = [-90, 90]\n";
+  EXPECT_EQ(parse_machine(arm, "arm").couplings.size(), 1U);
+  const std::string column = "name = \"column\"\nchain = \"w X' b Z A t\"\n" + toml[2] +
                              "[axis.X]\ntravel_mm = [0, 1]\n[axis.Z]\ntravel_mm = [0, 1]\n[axis.A]\nendless = true\n";
   EXPECT_EQ(parse_machine(column, "states").states.size(), 7U);
 
   const auto folder = std::filesystem::path(testing::TempDir()) / "abbe_documented";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "ebx.csv") << "X_mm,EBX_urad,remark\n0,1,a\n1400,2,b\n";
-  std::string errors = toml[2];
+  std::string errors = toml[3];
   const std::string covariance = "covariance = \"a.covariance.csv\"";
   ASSERT_NE(errors.find(covariance), std::string::npos);
   errors.erase(errors.find(covariance), covariance.size());
@@ -68,12 +71,12 @@ TEST(DocumentedExamples, AreAccepted) {
 
   const Machine with_lag = parse_machine(
       machine_text(with_state) + "[state.column]\nkind = \"lag\"\nof = \"ambient\"\ntime_constant_s = 2400\n", "lag");
-  const Study simulated = parse_study(toml[3], "a.study.toml", with_lag);
+  const Study simulated = parse_study(toml[4], "a.study.toml", with_lag);
   EXPECT_EQ(simulated.setups[0].plans.size(), 4U);
   EXPECT_EQ(simulated.identification->motions.size(), 15U);
-  const Study measured = parse_study(toml[4], "b.study.toml", machine);
+  const Study measured = parse_study(toml[5], "b.study.toml", machine);
   EXPECT_TRUE(measured.setups[0].noise_from_data);
-  const Study bar = parse_study(toml[5], "c.study.toml", machine);
+  const Study bar = parse_study(toml[6], "c.study.toml", machine);
   EXPECT_EQ(bar.setups[0].plans.size(), 2U);
 }
 
