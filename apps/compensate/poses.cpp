@@ -48,7 +48,8 @@ int run_robot_program(const PosesCommand& command, RobotLanguage language) {
   request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit, command.states,
                                        StatesOfErrors::allowed);
   if (command.workpiece.any()) {
-    throw InputError({.field = "--workpiece-expansion-um-per-m-K"}, "is for poses as CSV", "poses, no robot program");
+    throw InputError({.field = "--workpiece-..."}, "a robot program is not corrected for the workpiece's expansion",
+                     "poses in a CSV file");
   }
   request.program = parse_robot_program(read_text_file(command.poses), language, command.poses);
   if (!command.output.empty()) refuse_input_as_output(command.output);
@@ -134,11 +135,14 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   WorkpieceOptions& workpiece = options->workpiece;
   command->add_option(
       "--workpiece-expansion-um-per-m-K", workpiece.expansion,
-      "Expansion coefficient of a workpiece that is to be right at 20 degC and has another temperature");
-  command->add_option("--u-workpiece-expansion-um-per-m-K", workpiece.u_expansion, "Its standard uncertainty");
-  command->add_option("--workpiece-state", workpiece.state, "State of the machine that is its temperature");
-  command->add_option("--u-workpiece-temperature-K", workpiece.u_kelvin, "Standard uncertainty of that temperature");
-  command->add_option("--workpiece-fixed-mm", workpiece.fixed_mm, "Point that stays where it is (default 0 0 0)")
+      "Expansion coefficient of a workpiece that has to be right at 20 degC and has another temperature");
+  command->add_option("--u-workpiece-expansion-um-per-m-K", workpiece.u_expansion,
+                      "Standard uncertainty of that coefficient");
+  command->add_option("--workpiece-state", workpiece.state, "State of the machine file that is its temperature, degC");
+  command->add_option("--u-workpiece-temperature-K", workpiece.u_kelvin, "Standard uncertainty of that temperature, K");
+  command
+      ->add_option("--workpiece-fixed-mm", workpiece.fixed_mm,
+                   "Point that stays where it is, mm, workpiece frame (default 0 0 0)")
       ->expected(3);
   command->add_flag("--dry-run", options->dry_run,
                     "Report only: the largest corrections and where they are; write nothing");

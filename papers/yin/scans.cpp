@@ -170,7 +170,8 @@ YinScans yin_simulated_scans(std::uint64_t seed) {
   scanner.noise = yin::kSurfaceNoise;
   Eigen::Matrix3Xd places(3, 300), normals(3, 300);
   for (Index i = 0; i < places.cols(); ++i) {
-    normals.col(i) = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    const double z = random.normal(), y = random.normal(), x = random.normal();
+    normals.col(i) = Vector3d(x, y, z).normalized();
     places.col(i) = kSphere + yin::kSphereRadius * normals.col(i);
   }
   scans.sphere = list_of(scan_places(scanner, scene, result.table_from_scanner, places, normals, random));

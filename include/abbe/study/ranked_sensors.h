@@ -31,8 +31,8 @@ struct RankedSensors {
   std::vector<HeldOutSensors> without;  ///< all but one, the one that is missed most first
   std::size_t enough = 0;  ///< index into forward: the smallest number within a standard error of the smallest error
   std::size_t blocks = 0;  ///< that all sets of sensors predict
-  std::vector<std::string> courses;    ///< names of what SensorLikeness counts
-  std::vector<SensorLikeness> likely;  ///< courses that cannot be told apart, or do not change
+  std::vector<std::string> courses;   ///< names of what SensorLikeness counts
+  std::vector<SensorLikeness> alike;  ///< courses that cannot be told apart, or do not change
 };
 
 /// @param problem  of the study with all terms; observations stand where they stood afterwards

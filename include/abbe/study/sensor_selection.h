@@ -58,13 +58,13 @@ struct SensorLikeness {
 };
 
 struct SensorSelection {
-  std::vector<std::string> names;      ///< [sensors]
-  double none = 0, all = 0;            ///< error without any sensor, and with all of them
-  std::vector<SensorStep> without;     ///< each one taken from all, the one that is missed most first
-  std::vector<SensorStep> forward;     ///< added one by one, the best first
-  std::size_t enough = 0;              ///< so many of `forward` come within kEnoughError of all
-  std::vector<std::string> courses;    ///< names of what SensorLikeness counts: states, lags among them
-  std::vector<SensorLikeness> likely;  ///< what cannot be told apart, or does not change
+  std::vector<std::string> names;     ///< [sensors]
+  double none = 0, all = 0;           ///< error without any sensor, and with all of them
+  std::vector<SensorStep> without;    ///< each one taken from all, the one that is missed most first
+  std::vector<SensorStep> forward;    ///< added one by one, the best first
+  std::size_t enough = 0;             ///< so many of `forward` come within kEnoughError of all
+  std::vector<std::string> courses;   ///< names of what SensorLikeness counts: states, lags among them
+  std::vector<SensorLikeness> alike;  ///< what cannot be told apart, or does not change
 };
 
 /// A selection is enough if its error exceeds that of all sensors by less than this part.

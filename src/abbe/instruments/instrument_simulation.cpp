@@ -36,7 +36,8 @@ SimulatedInstrument simulate_instrument(const Machine& machine, const ErrorSet& 
       double& value = result.readings.measured[row][k];
       value += options.noise_factor * u * random.normal();
       const double size = options.outlier_mm * (instrument->components()[row].is_angle ? 1e-3 : 1.0);
-      const double shift = random.uniform(0.5, 1.5) * size * (random.uniform() < 0.5 ? -1 : 1);
+      const double sizes = random.uniform(0.5, 1.5), side = random.uniform() < 0.5 ? -1 : 1;
+      const double shift = sizes * size * side;
       if (outlier) value += shift;
     }
   }

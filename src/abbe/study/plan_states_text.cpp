@@ -56,7 +56,7 @@ std::string sensors_text(const SensorSelection& sensors) {
                         sensors.names[sensors.forward[k].sensor]);
   }
   text += "  " + enough_sensor_words(sensors) + "\n";
-  for (const SensorLikeness& one : sensors.likely) text += "  note: " + likeness_words(sensors.courses, one) + "\n";
+  for (const SensorLikeness& one : sensors.alike) text += "  note: " + likeness_words(sensors.courses, one) + "\n";
   return text;
 }
 
@@ -71,7 +71,7 @@ nlohmann::ordered_json sensors_json(const SensorSelection& sensors) {
     json["added_in_turn"].push_back({{"sensor", sensors.names[step.sensor]}, {"error_um", 1e3 * step.error}});
   }
   json["enough"] = sensors.enough;
-  for (const SensorLikeness& one : sensors.likely) json["alike"].push_back(likeness_json(sensors.courses, one));
+  for (const SensorLikeness& one : sensors.alike) json["alike"].push_back(likeness_json(sensors.courses, one));
   return json;
 }
 
@@ -231,7 +231,7 @@ nlohmann::json planned_states_tables(const StudyPlan& result) {
   std::string note =
       fmt::format("With all sensors {:.3f} \xC2\xB5m remain, without any {:.3f} \xC2\xB5m. {}.",
                   1e3 * result.sensors.all, 1e3 * result.sensors.none, enough_sensor_words(result.sensors));
-  for (const SensorLikeness& one : result.sensors.likely)
+  for (const SensorLikeness& one : result.sensors.alike)
     note += " " + likeness_words(result.sensors.courses, one) + ".";
   tables.push_back(
       {{"title", "Which sensors matter"},

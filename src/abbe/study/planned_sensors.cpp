@@ -67,7 +67,7 @@ SensorSelection planned_sensors(const PlanningModel& model, const PlanningCandid
       course(static_cast<Index>(k), static_cast<Index>(n)) = over[k][needed[n]];
     }
   }
-  result.likely = like_sensors(course);
+  result.alike = like_sensors(course);
   return result;
 }
 

@@ -223,9 +223,9 @@ TEST(PlanOverStates, SaysWhatOneTemperatureLeavesOpen) {
   EXPECT_THAT(text, HasSubstr("not determined at these states"));
   EXPECT_EQ(plan_json(study, plan).count("predicted_volumetric_uncertainty_um"), 0U);
   EXPECT_FALSE(plan_json(study, plan)["states"]["determined"].get<bool>());
-  const auto hall = std::find_if(plan.sensors.likely.begin(), plan.sensors.likely.end(),
+  const auto hall = std::find_if(plan.sensors.alike.begin(), plan.sensors.alike.end(),
                                  [](const SensorLikeness& one) { return one.still(); });
-  ASSERT_NE(hall, plan.sensors.likely.end());
+  ASSERT_NE(hall, plan.sensors.alike.end());
   EXPECT_EQ(plan.sensors.courses[hall->sensor], "hall");
   // Far from the measured temperature prior knowledge is all there is.
   double near = 1e9, far = 0;

@@ -130,8 +130,8 @@ class SensorRanking {
   std::vector<std::vector<std::size_t>> needs_{};  ///< [terms] states of the machine
 };
 
-void find_likely(const Study& study, const Campaign& campaign, const std::vector<std::size_t>& sensors,
-                 RankedSensors& result) {
+void find_alike(const Study& study, const Campaign& campaign, const std::vector<std::size_t>& sensors,
+                RankedSensors& result) {
   std::vector<std::vector<double>> values(sensors.size());
   for (const CampaignSetup& setup : campaign.setups) {
     const std::vector<std::vector<double>>& state = setup.readings.poses.state;
@@ -151,7 +151,7 @@ void find_likely(const Study& study, const Campaign& campaign, const std::vector
       course(static_cast<Index>(k), static_cast<Index>(s)) = values[s][k];
     result.courses.push_back(study.machine.states[sensors[s]].name);
   }
-  result.likely = like_sensors(course);
+  result.alike = like_sensors(course);
 }
 
 /// The smallest number whose error is within a standard error of the smallest one.
@@ -212,7 +212,7 @@ RankedSensors rank_sensors(const Study& study, const Campaign& campaign, const P
     result.without.push_back(figures(others));
   }
   result.enough = enough_of(result.forward);
-  find_likely(study, campaign, ranking.sensors(), result);
+  find_alike(study, campaign, ranking.sensors(), result);
   return result;
 }
 

@@ -232,7 +232,7 @@ TEST(RankedSensors, RefusesWhatCannotBeRanked) {
   EXPECT_THAT(message_of([&] {
                 study_of_sensors(folder, "rank_sensors = true\nloss = \"huber\"\n" + terms_of_sensors(false));
               }),
-              HasSubstr("rank_sensors: is done by sums of squares"));
+              HasSubstr("rank_sensors: compares sums of squares"));
 }
 
 }  // namespace

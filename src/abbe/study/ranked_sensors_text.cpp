@@ -65,7 +65,7 @@ std::string ranked_sensors_text(const RankedSensors& ranked) {
     if (ranked.names.size() < 2) break;
     text += fmt::format("    all without {}: {}\n", missing_sensor(ranked, one), held_out_words(one));
   }
-  for (const SensorLikeness& one : ranked.likely) {
+  for (const SensorLikeness& one : ranked.alike) {
     text += "    note: " + likeness_words(ranked.courses, one) + "\n";
   }
   return text;
@@ -97,7 +97,7 @@ nlohmann::ordered_json ranked_sensors_json(const RankedSensors& ranked) {
     json["all_but_one"].push_back({{"without", missing_sensor(ranked, one)}, {"result", held_out_json(ranked, one)}});
   }
   json["enough"] = ranked.enough;
-  for (const SensorLikeness& one : ranked.likely) json["alike"].push_back(likeness_json(ranked.courses, one));
+  for (const SensorLikeness& one : ranked.alike) json["alike"].push_back(likeness_json(ranked.courses, one));
   return json;
 }
 

@@ -190,18 +190,18 @@ TEST(SensorSelection, SaysWhichCoursesFollowFromOthers) {
     course(k, 3) = course(k, 0) + course(k, 1) + 0.1 * std::cos(70 * at);   // from both
     course(k, 4) = 22.5;
   }
-  const std::vector<SensorLikeness> likely = like_sensors(course);
+  const std::vector<SensorLikeness> alike = like_sensors(course);
   const auto of = [&](std::size_t sensor) {
-    return std::find_if(likely.begin(), likely.end(), [&](const SensorLikeness& one) { return one.sensor == sensor; });
+    return std::find_if(alike.begin(), alike.end(), [&](const SensorLikeness& one) { return one.sensor == sensor; });
   };
-  ASSERT_NE(of(0), likely.end());
+  ASSERT_NE(of(0), alike.end());
   EXPECT_EQ(of(0)->other, 2U);
   EXPECT_NEAR(of(2)->left, 0.02 / std::sqrt(2), 0.002);
   EXPECT_EQ(of(2)->other, 0U);
-  ASSERT_NE(of(3), likely.end());
+  ASSERT_NE(of(3), alike.end());
   EXPECT_EQ(of(3)->other, SensorLikeness::kAllOthers);
   EXPECT_NEAR(of(3)->left, 0.1 / std::sqrt(2), 0.01);
-  ASSERT_NE(of(4), likely.end());
+  ASSERT_NE(of(4), alike.end());
   EXPECT_TRUE(of(4)->still());
   EXPECT_TRUE(like_sensors(course.leftCols(2)).empty());
 }

@@ -30,24 +30,13 @@ TEST(PieceStates, NoSampleOfAnyPieceExceedsItsBound) {
       for (int n = 0; n < 40; ++n) {
         const ProgramCoordinates coordinates =
             n % 2 == 0 || !bounder.has_tool_centre() ? ProgramCoordinates::axes : ProgramCoordinates::tool_centre;
-        const ProgramMove move = test::random_move(machine, correction.kinematics(), coordinates, generator);
-        const std::size_t tool = correction.tool(move.tool_length);
-        const MovePath path(move);
-        std::array<CorrectedNode, 2> nodes;
-        nodes[0].words = move.start;
-        nodes[1].words = move.end;
-        correction.correct(coordinates, tool, nodes);
-        if (!nodes[0].point_reached() || !nodes[1].point_reached()) continue;
-        const MovePiece piece{&nodes[0], &nodes[1], path.is_arc() ? &path : nullptr, 1};
-        const PieceBound bound =
-            bound_pieces(bounder, machine.axes.size(), coordinates, correction.tool_point(tool), {&piece, 1});
-        double point = 0, direction = 0;
-        test::sample_piece(control, move, nodes[0], nodes[1], 0, 1, point, direction);
-        const double ends = std::max(nodes[0].orientation_left, nodes[1].orientation_left);
-        ASSERT_LE(point, bound.position + 2e-9) << "move " << n << " of set " << set;
-        ASSERT_LE(direction, bound.orientation + ends + 1e-10) << "move " << n << " of set " << set;
+        const std::optional<test::SampledMove> move =
+            test::sample_random_move(machine, correction, bounder, control, coordinates, generator);
+        if (!move) continue;
+        ASSERT_LE(move->point, move->bound.position + 2e-9) << "move " << n << " of set " << set;
+        ASSERT_LE(move->direction, move->bound.orientation + move->ends + 1e-10) << "move " << n << " of set " << set;
         ++sampled;
-        if (point > 1e-6 && !path.is_arc()) ratios.push_back(bound.position / point);
+        if (move->point > 1e-6 && !move->is_arc) ratios.push_back(move->bound.position / move->point);
       }
     }
   }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "abbe/compensate/program/move_splitting.h"
@@ -68,6 +70,35 @@ inline void sample_piece(const ControlledMachine& control, const ProgramMove& mo
     point = std::max(point, control.point_missed(actual, commanded));
     direction = std::max(direction, control.direction_missed(actual, commanded));
   }
+}
+
+/// A random move in one piece: its bound, and the largest that samples of it miss.
+struct SampledMove {
+  bool is_arc = false;
+  PieceBound bound;
+  double point = 0, direction = 0;  ///< mm, rad
+  double ends = 0;                  ///< rad, by which the directions at the ends are missed
+};
+
+/// @returns nothing where the ends of the move are not reached
+inline std::optional<SampledMove> sample_random_move(const Machine& machine, NodeCorrection& correction,
+                                                     const PieceBounder& bounder, const ControlledMachine& control,
+                                                     ProgramCoordinates coordinates, std::mt19937_64& generator) {
+  const ProgramMove move = random_move(machine, correction.kinematics(), coordinates, generator);
+  const std::size_t tool = correction.tool(move.tool_length);
+  const MovePath path(move);
+  std::array<CorrectedNode, 2> nodes;
+  nodes[0].words = move.start;
+  nodes[1].words = move.end;
+  correction.correct(coordinates, tool, nodes);
+  if (!nodes[0].point_reached() || !nodes[1].point_reached()) return std::nullopt;
+  const MovePiece piece{&nodes[0], &nodes[1], path.is_arc() ? &path : nullptr, 1};
+  SampledMove sampled;
+  sampled.is_arc = path.is_arc();
+  sampled.bound = bound_pieces(bounder, machine.axes.size(), coordinates, correction.tool_point(tool), {&piece, 1});
+  sample_piece(control, move, nodes[0], nodes[1], 0, 1, sampled.point, sampled.direction);
+  sampled.ends = std::max(nodes[0].orientation_left, nodes[1].orientation_left);
+  return sampled;
 }
 
 }  // namespace abbe::test

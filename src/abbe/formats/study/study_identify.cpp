@@ -318,7 +318,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
   plan.loss_scale = table.size_or("loss_scale", Quantity::dimensionless, 0);
   read_variances(table, plan);
   if (plan.rank_sensors && (plan.loss != LossKind::none || plan.strategy != Strategy::joint)) {
-    table.fail("rank_sensors", "is done by sums of squares of one identification",
+    table.fail("rank_sensors", "compares sums of squares, which need one identification by least squares",
                "loss = \"none\" and strategy = \"joint\"");
   }
   if (plan.select_terms && (plan.loss != LossKind::none || plan.strategy != Strategy::joint)) {

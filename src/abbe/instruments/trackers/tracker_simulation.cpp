@@ -85,7 +85,9 @@ Vector3d noisy_reading(const Vector3d& point, const TrackerStation& station, con
   const double along = random.normal(), side = random.normal(), up = random.normal();
   const bool outlier = random.uniform() < options.outlier_fraction;
   const double size = options.outlier_mm * random.uniform(0.5, 1.5);
-  const Vector3d direction = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  // Drawn one by one: the order in which arguments are worked out is the compiler's.
+  const double z = random.normal(), y = random.normal(), x = random.normal();
+  const Vector3d direction = Vector3d(x, y, z).normalized();
   const double across_mm = options.noise_factor * station.noise.transverse_uncertainty(range);
   const double along_mm = options.noise_factor * station.noise.range_uncertainty(range);
   // Along an arc, so that noise across the beam does not lengthen the range.
