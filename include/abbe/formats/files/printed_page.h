@@ -50,4 +50,8 @@ std::size_t pdf_page_count(const std::string& pdf);
 /// @param date  "20261128", or empty: blanks in place of both entries
 void set_pdf_date(const std::string& date, std::string& pdf);
 
+/// Numbers the nodes of a page, "(node00000053)", from 1 in their order, in place. Chromium counts on through what it
+/// does besides, so that the same page has other numbers on a busy machine.
+void number_pdf_nodes(std::string& pdf);
+
 }  // namespace abbe

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -173,6 +174,20 @@ std::string unpacked_objects(const std::string& pdf, std::size_t at) {
   return "";
 }
 
+constexpr std::string_view kNode = "(node";
+constexpr std::size_t kNodeDigits = 8;
+
+/// Where the digits of a node's number begin, from `at` on; npos: nowhere.
+std::size_t find_node(const std::string& pdf, std::size_t at) {
+  for (at = pdf.find(kNode, at); at != std::string::npos; at = pdf.find(kNode, at + 1)) {
+    const std::size_t begin = at + kNode.size(), end = begin + kNodeDigits;
+    if (end >= pdf.size() || pdf[end] != ')') continue;
+    const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+    if (std::all_of(pdf.data() + begin, pdf.data() + end, is_digit)) return begin;
+  }
+  return std::string::npos;
+}
+
 }  // namespace
 
 PagePrinter find_page_printer() {
@@ -231,6 +246,7 @@ PrintedPage print_page(const std::string& html, const PrintSettings& settings) {
     return printed;
   }
   set_pdf_date(settings.date, pdf);
+  number_pdf_nodes(pdf);
   printed.pdf = std::move(pdf);
   return printed;
 }
@@ -265,6 +281,18 @@ void set_pdf_date(const std::string& date, std::string& pdf) {
         break;
       }
     }
+  }
+}
+
+void number_pdf_nodes(std::string& pdf) {
+  std::map<std::string, std::size_t> numbers;
+  for (std::size_t at = find_node(pdf, 0); at != std::string::npos; at = find_node(pdf, at)) {
+    numbers.emplace(pdf.substr(at, kNodeDigits), 0);
+  }
+  std::size_t next = 0;
+  for (auto& [node, number] : numbers) number = ++next;
+  for (std::size_t at = find_node(pdf, 0); at != std::string::npos; at = find_node(pdf, at)) {
+    pdf.replace(at, kNodeDigits, fmt::format("{:08}", numbers.at(pdf.substr(at, kNodeDigits))));
   }
 }
 

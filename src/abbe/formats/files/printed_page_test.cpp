@@ -214,5 +214,16 @@ TEST(PrintedPage, DatesOfWeasyPrintGetTheirPrefixAndAsMuchAsThereIsRoomFor) {
   EXPECT_EQ(pdf, "/CreationDate (D:20261128000000    )/ModDate (D:20261128)/Title (20991231)/CreationDate (2099)");
 }
 
+TEST(PrintedPage, NodesHaveTheSameNumbersWhateverTheBrowserCountedBefore) {
+  std::string quiet =
+      "/ID (node00000053)>> /Headers [(node00000053) (node00000079)] (node0000005) (node000000534) (node";
+  std::string busy =
+      "/ID (node00000056)>> /Headers [(node00000056) (node00000101)] (node0000005) (node000000534) (node";
+  number_pdf_nodes(quiet);
+  number_pdf_nodes(busy);
+  EXPECT_EQ(quiet, "/ID (node00000001)>> /Headers [(node00000001) (node00000002)] (node0000005) (node000000534) (node");
+  EXPECT_EQ(busy, quiet);
+}
+
 }  // namespace
 }  // namespace abbe
