@@ -4,13 +4,15 @@
 #include <string>
 
 #include "options.h"
+#include "process_group.h"
 
 namespace abbe {
 
 /// Subcommands register themselves and leave their work in `run`, which main() calls once everything is parsed.
 struct CommandLine {
   Program program;
-  std::function<int()> run;  ///< returns an ExitCode
+  std::function<int()> run;           ///< returns an ExitCode
+  ProcessGroup* processes = nullptr;  ///< that share the work of the command; null: this one does all
 
   CommandLine();
   /// Heading in --help of the subcommands that are added from now on; empty: --help does not list them.

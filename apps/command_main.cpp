@@ -105,6 +105,10 @@ int run_command(int argc, const char* const* argv, const std::function<void(Comm
              "; expected inputs of a size that a machine and its errors can have");
     tell_complete_outputs();
     return kNegative;
+  } catch (const SumError& error) {
+    complain(error.what());
+    tell_complete_outputs();
+    return kBadInput;
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return printed(kBadInput);
     complain(std::string("internal error: ") + error.what());

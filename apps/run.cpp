@@ -46,8 +46,9 @@ void add_run_command(CommandLine& line) {
   command->add_flag("--accept-misfit", options->accept_misfit,
                     "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
-    line.run = [options]() -> int {
+    line.run = [options, processes = line.processes]() -> int {
       Study study = read_study(options->study);
+      if (processes != nullptr && !processes->is_first()) return processes->serve(study);
       if (!options->output.empty()) study.output = options->output;
       if (!options->before.empty()) study.report.before = options->before;
       check_results_folder(study.output);
@@ -59,9 +60,9 @@ void add_run_command(CommandLine& line) {
       StepProgress progress;
       const StudyResult result =
           run_study(study, {.accept_misfit = options->accept_misfit,
-                            .progress = [&](StudyStep step, std::size_t done, std::size_t total) {
-                              progress.show(step_words(study, step), done, total);
-                            }});
+                            .progress = [&](StudyStep step, std::size_t done,
+                                            std::size_t total) { progress.show(step_words(study, step), done, total); },
+                            .summation = processes == nullptr ? Summation() : processes->summation(study)});
       progress.end();
       PrintedPage printed;
       std::optional<CustomerReport> customer;
