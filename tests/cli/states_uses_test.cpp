@@ -293,8 +293,8 @@ TEST_F(StateUses, NoCommandOverlooksAState) {
     const CommandResult with = run(command, "both", {"--state", "hall_degC=22"});
     if (with.exit_code != ExitCode::done) {
       EXPECT_EQ(with.exit_code, ExitCode::bad_input) << with.err;
-      EXPECT_THAT(with.err, AnyOf(HasSubstr("depends on"), HasSubstr("depend on"), HasSubstr("state"),
-                                  HasSubstr("rotary axes")))
+      EXPECT_THAT(with.err,
+                  AnyOf(HasSubstr("depends on"), HasSubstr("depend on"), HasSubstr("state"), HasSubstr("rotary axes")))
           << with.err;
     }
   }
@@ -302,8 +302,8 @@ TEST_F(StateUses, NoCommandOverlooksAState) {
 
 TEST_F(StateUses, APathIsCorrectedAtEveryPose) {
   folder.write("curve.csv", "x_mm,y_mm,z_mm,i,j,k\n10,10,10,0,0,1\n400,10,250,0,0,1\n20,300,90,0,0,1\n");
-  const CommandResult result = run({"path", "curve.csv", "-o", "path.csv", "--feed-mm-per-min", "100", "--json"},
-                                   "computed");
+  const CommandResult result =
+      run({"path", "curve.csv", "-o", "path.csv", "--feed-mm-per-min", "100", "--json"}, "computed");
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_THAT(json["errors_along"].dump(), HasSubstr("\"EZX*ram\""));

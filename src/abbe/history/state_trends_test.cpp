@@ -20,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kYear = 365.2425;
+constexpr double kDaysOfAYear = 365.2425;
 constexpr double kNoise = 1e-3;                                                          // mm
 constexpr double kScale = 4e-3, kDriftPerYear = 6e-3, kScalePerK = 1.5e-3;               // mm at the ends of the travel
 constexpr double kMeanTemperature[] = {20, 17, 19, 24, 26, 22, 18, 16, 20, 25, 27, 29};  // degC, of each campaign
@@ -36,7 +36,7 @@ struct LineFit {
 /// their least squares: without the temperature for one column.
 LineFit measured_campaign(std::size_t campaign, Eigen::Index columns, double reference) {
   RandomStream random(77, campaign);
-  const double years = 91 * static_cast<double>(campaign) / kYear;
+  const double years = 91 * static_cast<double>(campaign) / kDaysOfAYear;
   Eigen::MatrixXd design(60, columns);
   Eigen::VectorXd readings(60);
   LineFit fit{.coefficients = {}, .covariance = {}, .coolest = 1e3, .warmest = -1e3};
@@ -56,7 +56,7 @@ LineFit measured_campaign(std::size_t campaign, Eigen::Index columns, double ref
 }
 
 /// The campaign of these readings: the mill, whose EXX is the line and, with states, its growth per K.
-KeptCampaign kept_campaign(std::size_t campaign, bool with_states) {
+KeptCampaign campaign_of_readings(std::size_t campaign, bool with_states) {
   KeptCampaign kept;
   kept.number = static_cast<std::int64_t>(campaign) + 1;
   kept.measured = date_of("2023-01-01") + std::chrono::days(91 * campaign);
@@ -84,7 +84,7 @@ KeptCampaign kept_campaign(std::size_t campaign, bool with_states) {
 TrendRequest twelve_campaigns(bool with_states) {
   TrendRequest request;
   for (std::size_t k = 0; k < std::size(kMeanTemperature); ++k) {
-    request.campaigns.push_back(kept_campaign(k, with_states));
+    request.campaigns.push_back(campaign_of_readings(k, with_states));
   }
   return request;
 }
@@ -223,7 +223,7 @@ TEST(HistoryWithStates, KeepsThemAndTellsOlderProgramsByItsForm) {
     return statement.step() ? statement.integer(0) : -1;
   };
   const auto to_keep = [](std::size_t campaign, bool with_states) {
-    KeptCampaign kept = kept_campaign(campaign, with_states);
+    KeptCampaign kept = campaign_of_readings(campaign, with_states);
     return CampaignToKeep{kept.campaign, kept.measured, "memory", ""};
   };
   add_to_history(file, {to_keep(0, false)});
@@ -234,7 +234,7 @@ TEST(HistoryWithStates, KeepsThemAndTellsOlderProgramsByItsForm) {
   EXPECT_EQ(form(), 2);
   const std::vector<KeptCampaign> kept = read_history(file);
   ASSERT_EQ(kept.size(), 4U);
-  const IdentifiedCampaign expected = kept_campaign(4, true).campaign;
+  const IdentifiedCampaign expected = campaign_of_readings(4, true).campaign;
   EXPECT_EQ(kept[2].campaign.errors.errors.motions, expected.errors.errors.motions);
   EXPECT_TRUE(kept[2].campaign.errors.covariance == expected.errors.covariance);
   ASSERT_EQ(kept[2].campaign.errors.covered.size(), 1U);
