@@ -7,6 +7,10 @@
 
 #include "abbe/errors/error_states.h"
 #include "abbe/formats/text/number_text.h"
+#include "abbe/identify/trust/prediction.h"
+#include "abbe/report/customer/customer_notes.h"
+#include "abbe/report/customer/customer_words.h"
+#include "abbe/study/state_ranges.h"
 
 namespace abbe {
 namespace {
@@ -53,7 +57,25 @@ std::string errors_that_follow(const Machine& machine, const ErrorSet& errors) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Why nothing is proven of a state; empty: verdicts are given.
+/// @param outside  references of states that the readings did not cover
+std::string without_verdict(bool is_refused, bool is_simulated, const std::string& outside, ReportLanguage language) {
+  if (is_refused) return std::string(customer_word(CustomerWord::without_trust, language));
+  if (is_simulated) return std::string(customer_word(CustomerWord::without_simulation, language));
+  if (outside.empty()) return {};
+  const std::string note = fmt::format("Outside the states that the readings cover: {}.", outside);
+  return customer_note(note, language).value_or(note);
+}
+
 }  // namespace
+
+ErrorsFile identified_for_customer(const Study& study, const StudyResult& result) {
+  ErrorsFile file;
+  file.errors = result.identification.errors;
+  file.covariance = machine_covariance(result.identification, file.errors.parameter_count());
+  if (has_states(file.errors)) file.covered = covered_states(study, result);
+  return file;
+}
 
 ErrorsFile errors_for_customer(const Machine& machine, ErrorsFile file) {
   if (!has_states(file.errors)) return file;
@@ -98,6 +120,23 @@ std::vector<std::string> customer_state_notes(const Machine& machine, const Erro
         follow));
   }
   return notes;
+}
+
+std::vector<CustomerState> customer_states(const Study& study, const StudyResult& result, bool is_refused,
+                                           ReportLanguage language) {
+  const auto word = [&](CustomerWord what) { return std::string(customer_word(what, language)); };
+  const std::string now =
+      without_verdict(is_refused, result.campaign.truth.has_value(),
+                      references_not_covered(study.machine, identified_for_customer(study, result)), language);
+  if (!result.before) {
+    return {{word(CustomerWord::measured), now},
+            {word(CustomerWord::predicted_after), word(CustomerWord::without_measurement)}};
+  }
+  const ErrorsFile& before = result.before->errors;
+  const bool was_refused = !before.distrusted.empty() && !before.misfit_accepted;
+  return {{word(CustomerWord::before), without_verdict(was_refused, result.before->is_simulated,
+                                                       references_not_covered(study.machine, before), language)},
+          {word(CustomerWord::after), now}};
 }
 
 }  // namespace abbe

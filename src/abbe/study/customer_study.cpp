@@ -6,13 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "abbe/errors/error_states.h"
 #include "abbe/formats/files/results_files.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/customer/calibration_certificate.h"
-#include "abbe/report/customer/customer_notes.h"
 #include "abbe/report/customer/customer_words.h"
 #include "abbe/report/customer/local_numbers.h"
 #include "abbe/report/customer/quality_results.h"
@@ -20,7 +18,6 @@
 #include "abbe/study/compared_campaigns.h"
 #include "abbe/study/customer_errors.h"
 #include "abbe/study/customer_states.h"
-#include "abbe/study/state_ranges.h"
 #include "abbe/study/summary.h"
 #include "abbe/study/trust.h"
 
@@ -35,17 +32,8 @@ constexpr const char* kMeanVolumetric = "V_mean";
 /// "EXX_um" of a figure whose unit is shown as "µm".
 std::string tolerance_name(const std::string& symbol, bool angle) { return symbol + "_" + micro_unit(angle); }
 
-/// The identified errors as their file has them, as far as states matter.
-ErrorsFile identified_file(const Study& study, const StudyResult& result) {
-  ErrorsFile file;
-  file.errors = result.identification.errors;
-  file.covariance = machine_covariance(result.identification, file.errors.parameter_count());
-  if (has_states(file.errors)) file.covered = covered_states(study, result);
-  return file;
-}
-
 CustomerErrors identified_errors(const Study& study, const StudyResult& result) {
-  ErrorsFile file = errors_for_customer(study.machine, identified_file(study, result));
+  ErrorsFile file = errors_for_customer(study.machine, identified_for_customer(study, result));
   return {study.machine, std::move(file.errors), std::move(file.covariance), study.report.facts->language};
 }
 
@@ -127,32 +115,6 @@ void add_figures_before(const Study& study, const StudyResult& result, std::vect
   }
 }
 
-/// Why nothing is proven of a state; empty: verdicts are given.
-/// @param outside  references of states that the readings did not cover
-std::string without_verdict(bool is_refused, bool is_simulated, const std::string& outside, ReportLanguage language) {
-  if (is_refused) return std::string(customer_word(Word::without_trust, language));
-  if (is_simulated) return std::string(customer_word(Word::without_simulation, language));
-  if (outside.empty()) return {};
-  const std::string note = fmt::format("Outside the states that the readings cover: {}.", outside);
-  return customer_note(note, language).value_or(note);
-}
-
-std::vector<CustomerState> states_of(const Study& study, const StudyResult& result, bool is_refused,
-                                     ReportLanguage language) {
-  const auto word = [&](Word what) { return std::string(customer_word(what, language)); };
-  const std::string now =
-      without_verdict(is_refused, result.campaign.truth.has_value(),
-                      references_not_covered(study.machine, identified_file(study, result)), language);
-  if (!result.before) {
-    return {{word(Word::measured), now}, {word(Word::predicted_after), word(Word::without_measurement)}};
-  }
-  const ErrorsFile& before = result.before->errors;
-  const bool was_refused = !before.distrusted.empty() && !before.misfit_accepted;
-  return {{word(Word::before), without_verdict(was_refused, result.before->is_simulated,
-                                               references_not_covered(study.machine, before), language)},
-          {word(Word::after), now}};
-}
-
 std::vector<std::string> notes_of(const Study& study, const StudyResult& result) {
   std::vector<std::string> notes;
   if (result.before) {
@@ -162,7 +124,7 @@ std::vector<std::string> notes_of(const Study& study, const StudyResult& result)
   }
   if (result.usable()) {
     notes.push_back(study_verdict(study, result));
-    for (std::string& note : customer_state_notes(study.machine, identified_file(study, result)))
+    for (std::string& note : customer_state_notes(study.machine, identified_for_customer(study, result)))
       notes.push_back(std::move(note));
   }
   for (const std::string& warning : study_warnings(study, result)) notes.push_back(warning);
@@ -268,7 +230,7 @@ CustomerReport study_customer_report(const Study& study, const StudyResult& resu
   }
   report.is_simulated = result.campaign.truth.has_value();
   const bool is_refused = !result.usable() || (!result.distrusted.empty() && !result.misfit_accepted);
-  report.states = states_of(study, result, is_refused, language);
+  report.states = customer_states(study, result, is_refused, language);
   if (!result.usable()) report.refusals.push_back(study_verdict(study, result));
   for (const Distrust& reason : result.distrusted) {
     (is_refused ? report.refusals : report.notes).push_back("Not to be trusted: " + reason.text + ".");
