@@ -22,6 +22,7 @@
 #include "messages.h"
 #include "options.h"
 #include "progress.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -72,7 +73,7 @@ int run_trends(const HistoryCommand& command) {
     fmt::print("{}", evaluation_text(trends.report));
     if (!command.output.empty()) fmt::print("\nresults in {}\n", command.output);
   }
-  return trends.is_in_control() ? kDone : kNegative;
+  return tell_outside(trends.at_state, trends.is_in_control() ? kDone : kNegative);
 }
 
 int run_export(const HistoryCommand& command) {
@@ -126,13 +127,14 @@ void add_history_command(CommandLine& line) {
                               "  abbe history list mill.history", run_list);
   list->add_flag("--json", command->json, "Print JSON for programs");
 
-  Subcommand* trends =
-      add_part(*history, line, command, "trends",
-               "Follow every error: drift with uncertainty, unexpected values, when to measure again",
-               "  abbe history trends mill.history\n"
-               "  abbe history trends mill.history --limit-um 20 -o results/trends\n\n"
-               "Exit code 1: an error of the last campaign is outside what the earlier campaigns predict.",
-               run_trends);
+  Subcommand* trends = add_part(
+      *history, line, command, "trends",
+      "Follow every error: drift with uncertainty, unexpected values, when to measure again",
+      "  abbe history trends mill.history\n"
+      "  abbe history trends mill.history --limit-um 20 -o results/trends\n\n"
+      "Exit code 1: an error of the last campaign is outside what the earlier campaigns predict, or the readings of a\n"
+      "campaign do not cover the state at which errors are followed.",
+      run_trends);
   add_number(
       trends, "--limit-um", Quantity::length, "um", {0, 1e6}, command->trends.limit_mm,
       "Tolerated change at the tool by one error since the last campaign: the output says when to measure again");
@@ -140,6 +142,7 @@ void add_history_command(CommandLine& line) {
       ->check(in_range(2, 26));
   trends->add_output_folder("-o,--output", command->output,
                             "Results folder to write: evaluation.json, a plot per error, report.html");
+  add_states(*trends, command->trends.states);
   trends->add_flag("--json", command->json, "Print JSON for programs");
 
   Subcommand* back = add_part(*history, line, command, "export", "Write a campaign as a results folder",

@@ -109,7 +109,7 @@ void add_path_command(CommandLine& line) {
   command->add_input_file("curve", options->curve, "Curve (.csv, .ngc, .nc, .tap, .mpf) in workpiece coordinates")
       ->required();
   command->take_from_arguments({add_machine(*command, options->machine)->required()});
-  add_errors(*command, options->errors, "Identified location errors and tool offset (*.errors.toml)");
+  add_errors(*command, options->errors, "Identified errors (*.errors.toml)");
   command->add_input_file("--placement", options->placement, "Where the workpiece is clamped (*.placement.toml)");
   command->add_option("--hold", options->hold, "Axis kept at a command, AXIS_unit=position; repeatable");
   command->add_option(

@@ -12,6 +12,7 @@
 #include "abbe/controls/kinematic_values_text.h"
 #include "abbe/formats/files/kept_inputs.h"
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
@@ -29,7 +30,7 @@ namespace {
 
 struct KinematicsArguments {
   std::string machine, errors, format, output;
-  std::vector<std::string> states;
+  std::vector<std::string> states, at;
   std::optional<double> limit_um, limit_urad;
   std::optional<std::size_t> positions;
   std::optional<int> tool_carrier;
@@ -52,6 +53,7 @@ int run_kinematics(const KinematicsArguments& arguments) {
   if (arguments.limit_um) request.limit_mm = 1e-3 * *arguments.limit_um;
   if (arguments.limit_urad) request.limit_rad = 1e-6 * *arguments.limit_urad;
   request.positions = arguments.positions;
+  request.at = axis_options(request.machine, "--at", arguments.at);
   request.tool_carrier = arguments.tool_carrier;
   request.least_reduction = 0.01 * arguments.least_reduction_percent;
 
@@ -106,6 +108,9 @@ void add_compensate_kinematics(Subcommand& compensate, CommandLine& line) {
       ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   add_states(*command, arguments->states);
+  command->add_option("--at", arguments->at,
+                      "Where an axis stands for states that follow from the commands, AXIS_unit=position; repeatable "
+                      "(default: middle of its travel)");
   add_accept_misfit(*command, arguments->accept_misfit);
   command->add_flag("--json", arguments->json, "Print JSON for programs");
   command->callback([arguments, &line] { line.run = [arguments] { return run_kinematics(*arguments); }; });

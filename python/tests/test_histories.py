@@ -39,6 +39,54 @@ def examples_history(tmp_path):
     return history
 
 
+STATES = """name = "mill"
+chain = "w X' Y' b Z t"
+[axis.X]
+travel_mm = [0, 500]
+[axis.Y]
+travel_mm = [0, 400]
+[axis.Z]
+travel_mm = [-300, 0]
+[state.ambient]
+kind = "measured"
+unit = "degC"
+"""
+ERRORS = """[[location]]
+name = "EC0Y"
+value_urad = {}
+standard_uncertainty_urad = 1
+[[location]]
+name = "EC0Y"
+state = "ambient"
+value_urad = 2
+standard_uncertainty_urad = 0.1
+[covered]
+ambient_degC = [{}, {}]
+"""
+
+
+def test_errors_with_states_are_followed_at_a_state(tmp_path):
+    (tmp_path / "mill.machine.toml").write_text(STATES)
+    # 4 urad a quarter of a year; the last one in summer.
+    for k, covered in enumerate([(18, 22), (19, 23), (24, 28)]):
+        (tmp_path / f"c{k}.errors.toml").write_text(ERRORS.format(10 + 4 * k, *covered))
+    history = abbe.History(tmp_path / "mill.history")
+    files = [tmp_path / f"c{k}.errors.toml" for k in range(3)]
+    history.add(files, ["2026-01-01", "2026-04-02", "2026-07-02"], machine=tmp_path / "mill.machine.toml")
+    trends = history.trends(states={"ambient_degC": 25.0})
+    asked = ["history", "trends", history.path, "--state", "ambient_degC=25"]
+    assert trends.json_text() == command([*asked, "--json"], tmp_path, 1)
+    assert trends.at_state == {"ambient_degC": 25.0}
+    assert len(trends.outside) == 2 and "c0: ambient_degC = 25 lies outside the 18 to 22" in trends.outside[0]
+    error = trends.errors["EC0Y"]
+    assert error.extrapolated == [True, True, False] and error.per == ""
+    # 5 K from the reference: u^2 = 1 + (5 * 0.1)^2.
+    numpy.testing.assert_allclose(error.standard_uncertainties_mm_rad, 1.25 ** 0.5 * 1e-6)
+    numpy.testing.assert_allclose(error.changes_mm_rad, [0, 4e-6, 8e-6], atol=1e-12)
+    assert trends.errors["EC0Y*ambient"].per == "K"
+    assert history.trends().at_state == {"ambient_degC": 20.0}
+
+
 @pytest.mark.parametrize("options, arguments", [
     ([], {}), (["--limit-um", 20], {"limit_um": 20}), (["--last", 2], {"last": 2}),
 ])

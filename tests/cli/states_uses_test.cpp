@@ -16,6 +16,7 @@ namespace {
 
 using testing::AnyOf;
 using testing::HasSubstr;
+using testing::Not;
 
 const char* const kMillOfStates = R"(name = "mill"
 chain = "w b X Y Z t"
@@ -275,7 +276,7 @@ TEST_F(StateUses, NoCommandOverlooksAState) {
   const std::vector<std::vector<std::string>> commands = {
       {"map"},
       {"verify", "--truth", "both.errors.toml", "--poses", "20"},
-      {"path", "curve.csv", "-o", "curve.ngc"},
+      {"path", "curve.csv", "-o", "curve.ngc", "--feed-mm-per-min", "100"},
       {"compensate", "gcode", "part.ngc", "--dry-run"},
       {"compensate", "freeze", "--dry-run"},
       {"compensate", "table", "--for", "linuxcnc", "--dry-run"},
@@ -292,9 +293,42 @@ TEST_F(StateUses, NoCommandOverlooksAState) {
     const CommandResult with = run(command, "both", {"--state", "hall_degC=22"});
     if (with.exit_code != ExitCode::done) {
       EXPECT_EQ(with.exit_code, ExitCode::bad_input) << with.err;
-      EXPECT_THAT(with.err, AnyOf(HasSubstr("depends on"), HasSubstr("depend on"), HasSubstr("state"))) << with.err;
+      EXPECT_THAT(with.err,
+                  AnyOf(HasSubstr("depends on"), HasSubstr("depend on"), HasSubstr("state"), HasSubstr("rotary axes")))
+          << with.err;
     }
   }
+}
+
+TEST_F(StateUses, APathIsCorrectedAtEveryPose) {
+  folder.write("curve.csv", "x_mm,y_mm,z_mm,i,j,k\n10,10,10,0,0,1\n400,10,250,0,0,1\n20,300,90,0,0,1\n");
+  const CommandResult result =
+      run({"path", "curve.csv", "-o", "path.csv", "--feed-mm-per-min", "100", "--json"}, "computed");
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_THAT(json["errors_along"].dump(), HasSubstr("\"EZX*ram\""));
+  std::istringstream lines(folder.read("path.csv"));
+  std::string head, first, second;
+  std::getline(lines, head) && std::getline(lines, first) && std::getline(lines, second);
+  EXPECT_THAT(second, Not(HasSubstr(",400,"))) << "EXX has not been taken off";
+}
+
+TEST_F(StateUses, AHistoryIsFollowedAtOneState) {
+  std::vector<std::string> add = {"history", "add", "mill.history", "--machine", "mill.machine.toml"};
+  for (const int k : {1, 2, 3}) {
+    const std::string name = "c" + std::to_string(k) + ".errors.toml";
+    folder.write(name, measured_errors(2 + 0.01 * k) + kCoveredHall);
+    add.insert(add.begin() + 2 + k, name);
+    add.insert(add.end(), {"--date", "2026-0" + std::to_string(k) + "-01"});
+  }
+  ASSERT_EQ(abbe(add).exit_code, ExitCode::done) << abbe(add).err;
+  const CommandResult inside = abbe({"history", "trends", "mill.history", "--state", "hall_degC=22", "--json"});
+  ASSERT_EQ(inside.exit_code, ExitCode::done) << inside.err;
+  EXPECT_EQ(nlohmann::json::parse(inside.out)["at_state"]["hall_degC"], 22);
+  const CommandResult outside = abbe({"history", "trends", "mill.history", "--state", "hall_degC=60", "-o", "out"});
+  EXPECT_EQ(outside.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(outside.err, HasSubstr("abbe: c3: hall_degC = 60 lies outside the "));
+  EXPECT_THAT(folder.read("out/report.html"), HasSubstr("hall_degC = 60"));
 }
 
 }  // namespace

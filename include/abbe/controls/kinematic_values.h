@@ -9,6 +9,7 @@
 #include "abbe/controls/control_table.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"
+#include "abbe/machine/inverse_kinematics.h"
 #include "abbe/machine/machine.h"
 #include "abbe/verify/table_loss.h"
 #include "abbe/verify/volumetric_figures.h"
@@ -27,9 +28,12 @@ struct KinematicValuesRequest {
   std::optional<int> tool_carrier;  ///< --tool-carrier, siemens: $TC_CARR of this number instead of machine data
 
   std::optional<std::size_t> positions;  ///< --positions: per axis of the grid of `poses`; else 9, or 5 above 3 axes
-  std::optional<double> limit_mm;        ///< --limit-um: a larger change of a length is refused; above zero
-  std::optional<double> limit_rad;       ///< --limit-urad: the same of a direction component or an angle
-  double least_reduction = 0.01;  ///< --least-reduction-percent: share of the error below which values are refused
+  /// --at: where axes stand for states that follow from commands; others in the middle of their travel, endless ones at
+  /// 0
+  std::vector<HeldAxis> at{};
+  std::optional<double> limit_mm;   ///< --limit-um: a larger change of a length is refused; above zero
+  std::optional<double> limit_rad;  ///< --limit-urad: the same of a direction component or an angle
+  double least_reduction = 0.01;    ///< --least-reduction-percent: share of the error below which values are refused
 };
 
 /// In what a value is stated.
@@ -72,10 +76,14 @@ struct KinematicValues {
   std::vector<std::string> refused;   ///< why the values must not be used
   bool says_no() const { return !refused.empty(); }
 
-  VolumetricFigures volumetric;     ///< predicted from the errors over the grid of all commands
-  PoseList poses;                   ///< where the figures below are stated; those of `abbe compensate table`
-  std::vector<std::size_t> grid;    ///< positions per axis, chain order
-  SampleStatistics left_by_values;  ///< volumetric error that these values leave, the datum fitted
+  /// [axes] commands at which errors whose states follow from commands are taken; empty: there are none. What they do
+  /// elsewhere is left, and is in `after`.
+  std::vector<double> state_pose{};
+  PoseDeviations after_at_state_pose{};  ///< as `after`, if the errors were everywhere what they are at state_pose
+  VolumetricFigures volumetric;          ///< predicted from the errors over the grid of all commands
+  PoseList poses;                        ///< where the figures below are stated; those of `abbe compensate table`
+  std::vector<std::size_t> grid;         ///< positions per axis, chain order
+  SampleStatistics left_by_values;       ///< volumetric error that these values leave, the datum fitted
   /// Displacement as the control sees it, no datum fitted: nominal values, these values, the best the axes can do.
   PoseDeviations before, after, ideal;
   std::size_t ideal_not_reached = 0;  ///< poses whose point the ideal correction does not reach

@@ -46,12 +46,15 @@ struct Expected {
   bool is_within = true;
 };
 /// @param values  two or more; in the order of time
-Expected expected_last(const std::vector<TimedValue>& values);
+/// @param wander  variance that the value itself gains per unit of time by a random walk, after the value before the
+/// last
+Expected expected_last(const std::vector<TimedValue>& values, double wander = 0);
 
 /// Time after the last value when the trend may have left the band of `limit` around what was identified last: the
 /// expected change and its expanded uncertainty together reach the limit.
 /// @param u_last  standard uncertainty of the last value
+/// @param wander  as in expected_last()
 /// @return 0: at once; none: not before `longest`
-std::optional<double> time_to_limit(const Trend& trend, double u_last, double limit, double longest);
+std::optional<double> time_to_limit(const Trend& trend, double u_last, double limit, double longest, double wander = 0);
 
 }  // namespace abbe

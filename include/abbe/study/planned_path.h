@@ -49,7 +49,7 @@ namespace abbe {
 /// Messages name a field by the option of `abbe path` that sets it, given below.
 struct PathRequest {
   Machine machine;                         ///< nominal
-  std::optional<ErrorsFile> errors;        ///< --errors: location errors and a tool offset error only
+  std::optional<ErrorsFile> errors;        ///< --errors: states follow from the commands or the motions
   std::optional<PlacementFile> placement;  ///< --placement: where the workpiece is clamped
   Curve curve;
   std::string curve_file, errors_file, placement_file;  ///< names for messages
@@ -65,8 +65,9 @@ struct PathRequest {
 struct PlannedPath {
   Machine machine;  ///< calibrated, with the workpiece in place
   std::string curve_file, placement_file;
-  StateValues at_state{};             ///< at which the errors are taken
-  std::vector<std::string> warnings;  ///< of the placement
+  StateValues at_state{};                   ///< at which the errors are taken
+  std::vector<std::string> errors_along{};  ///< names of errors that change along the path, corrected at every pose
+  std::vector<std::string> warnings;        ///< of the placement
   ToolPath path;
   std::vector<std::vector<double>> commands;  ///< [steps][axes] as the control is to have them, mm or rad
   ToolPathMiss miss;                          ///< by which the tool misses the points of the curve
@@ -79,7 +80,10 @@ struct PlannedPath {
 };
 
 /// Axis commands that bring the tool of the calibrated machine along the curve. Opens no file and prints nothing.
-/// @throws InputError for errors that change with the position, a working move without feed, a held axis that the
+///
+/// Constant errors are put into the geometry of the machine, for which the path is planned. The commands of this path
+/// are then corrected for errors that change along it, pose by pose.
+/// @throws InputError for errors with states that have to be given, a working move without feed, a held axis that the
 ///   curve sets, regions without retract distance, and a start that leaves the path undecided
 PlannedPath plan_path(const PathRequest& request);
 

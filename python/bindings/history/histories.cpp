@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
@@ -71,7 +72,8 @@ std::vector<KeptCampaign> campaigns_in(const HistoryFile& history) {
   return computed([&] { return read_history(history.path.string()); });
 }
 
-MachineTrends trends_of(const HistoryFile& history, std::optional<double> limit_um, std::size_t last, bool page,
+MachineTrends trends_of(const HistoryFile& history, std::optional<double> limit_um, std::size_t last,
+                        const std::optional<std::map<std::string, double>>& states, bool page,
                         const nb::object& progress) {
   if (limit_um && !(*limit_um > 0 && *limit_um <= 1e6)) {
     throw InputError({.field = "limit_um"}, fmt::format("is {}", *limit_um), "above 0 to 1e6 um, or None");
@@ -80,6 +82,9 @@ MachineTrends trends_of(const HistoryFile& history, std::optional<double> limit_
   request.limit_mm = limit_um.value_or(0) * 1e-3;
   request.last = last;
   request.page = page;
+  if (states) {
+    for (const auto& [name, value] : *states) request.states.push_back(fmt::format("{}={}", name, value));
+  }
   request.campaigns = campaigns_in(history);
   return job_result(progress, [&](const JobControl& control) {
     return naming_arguments([&] { return find_trends(request, control.options("comparing campaigns")); });
@@ -159,17 +164,19 @@ void bind_histories(nb::module_& module) {
            "All campaigns in the order in which they were measured, each a HistoryCampaign. Raises InputError for a "
            "file\n"
            "that does not exist or is no history.")
-      .def(
-          "trends", &trends_of, nb::kw_only(), nb::arg("limit_um") = nb::none(), nb::arg("last") = 26,
-          nb::arg("page") = true, nb::arg("progress") = nb::none(),
-          "Follows every error over the campaigns: drift, unexpected values, when to measure again.\n\n"
-          "limit_um: tolerated change at the tool by one error since the last campaign, um; None: nothing is "
-          "predicted.\n"
-          "last: only the newest campaigns, 2 to 26. page: whether there is a plot of each error. progress: a function "
-          "of\n"
-          "the step, the pairs of campaigns compared and their number; Ctrl-C takes effect after a pair. Raises "
-          "InputError,\n"
-          "also for campaigns of fewer than two days.")
+      .def("trends", &trends_of, nb::kw_only(), nb::arg("limit_um") = nb::none(), nb::arg("last") = 26,
+           nb::arg("states") = nb::none(), nb::arg("page") = true, nb::arg("progress") = nb::none(),
+           "Follows every error over the campaigns: drift, unexpected values, when to measure again.\n\n"
+           "limit_um: tolerated change at the tool by one error since the last campaign, um; None: nothing is "
+           "predicted.\n"
+           "last: only the newest campaigns, 2 to 26. states: where errors with states are followed, {'ambient_degC': "
+           "26.5};\n"
+           "else at the references of the newest campaign. page: whether there is a plot of each error. progress: a "
+           "function "
+           "of\n"
+           "the step, the pairs of campaigns compared and their number; Ctrl-C takes effect after a pair. Raises "
+           "InputError,\n"
+           "also for campaigns of fewer than two days.")
       .def("__repr__", [](const HistoryFile& h) { return fmt::format("<abbe.History '{}'>", h.path.string()); });
 }
 

@@ -1,6 +1,7 @@
 #include "bindings/history/trends.h"
 
 #include <fmt/format.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -161,6 +162,19 @@ void bind_dated_trend(nb::module_& module) {
       .def_prop_ro(
           "is_angle", [](const DatedTrend& t) { return t.error.is_angle; }, "Whether numbers are in rad; else in mm.")
       .def_prop_ro(
+          "per", [](const DatedTrend& t) { return t.error.per; },
+          "Of a coefficient with a state, 'EXX*ambient': unit of the factor of its state, 'K', per which all numbers\n"
+          "are; else ''.")
+      .def_prop_ro(
+          "extrapolated",
+          [](const DatedTrend& t) {
+            nb::list values;
+            for (const std::uint8_t is : t.error.extrapolated) values.append(is != 0);
+            return values;
+          },
+          nb::sig("def extrapolated(self) -> list[bool]"),
+          "[n] whether the readings of a campaign did not cover HistoryTrends.at_state; empty without states.")
+      .def_prop_ro(
           "at_mm_rad", [](const DatedTrend& t) { return t.error.at; },
           "Position on its axis, mm or rad; None: the error is no function.")
       .def_prop_ro(
@@ -208,6 +222,13 @@ void bind_trends(nb::module_& module) {
           "next_date", [](const MachineTrends& t) { return date_or_none(t.next); },
           nb::sig("def next_date(self) -> datetime.date | None"),
           "When to measure again at the latest; None: not in 20 years, or no limit was given.")
+      .def_prop_ro(
+          "at_state",
+          [](const MachineTrends& t) { return std::map<std::string, double>(t.at_state.begin(), t.at_state.end()); },
+          "State at which errors are followed, {'ambient_degC': 20.0}; empty: none depends on a state.")
+      .def_prop_ro(
+          "outside", [](const MachineTrends& t) { return t.at_state.outside; },
+          "Where campaigns are extrapolated to this state, a sentence each.")
       .def_ro("next_error", &MachineTrends::next_error, "Name of the error that decides it, or ''.")
       .def_prop_ro("in_control", &MachineTrends::is_in_control,
                    "Whether no error is outside what its earlier values predict.")

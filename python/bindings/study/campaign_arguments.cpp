@@ -30,7 +30,7 @@ std::optional<Machine> machine_of_files(const std::optional<MachineArgument>& ar
 IdentifiedCampaign campaign_of(const CampaignArgument& argument, const std::optional<Machine>& machine,
                                std::size_t number) {
   if (const auto* const path = file_of_campaign(argument)) {
-    return computed([&] { return read_campaign(path->string(), machine); });
+    return computed([&] { return read_campaign(path->string(), machine, StatesOfErrors::allowed); });
   }
   const auto in_memory = [](const std::string& name, const MachineErrors& errors) {
     return IdentifiedCampaign{name, name, errors.machine, errors.file};

@@ -10,6 +10,7 @@
 
 #include "abbe/controls/kinematic_values_text.h"
 #include "bindings/files.h"
+#include "bindings/use/arguments.h"
 #include "bindings/use/carried_figures.h"
 
 namespace abbe::python {
@@ -24,8 +25,8 @@ struct KinematicResult {
 
 KinematicResult values_of(const MachineErrors& errors, const std::string& format, std::optional<std::size_t> positions,
                           std::optional<double> limit_um, std::optional<double> limit_urad,
-                          double least_reduction_percent, std::optional<int> tool_carrier, bool accept_misfit,
-                          const std::string& errors_file) {
+                          double least_reduction_percent, std::optional<int> tool_carrier, const AxisPositions& at,
+                          bool accept_misfit, const std::string& errors_file) {
   require_trusted(errors, accept_misfit, errors_file);
   KinematicValuesRequest request;
   request.format = format;
@@ -34,6 +35,7 @@ KinematicResult values_of(const MachineErrors& errors, const std::string& format
   request.covariance = errors.file.covariance;
   request.tool_carrier = tool_carrier;
   request.positions = positions;
+  request.at = axis_positions(errors.machine, "at", at);
   if (limit_um) request.limit_mm = 1e-3 * *limit_um;
   if (limit_urad) request.limit_rad = 1e-6 * *limit_urad;
   request.least_reduction = 0.01 * least_reduction_percent;
@@ -142,15 +144,18 @@ void bind_kinematic_values(nb::module_& module) {
   module.def(
       "kinematic_values", &values_of, nb::arg("errors"), nb::arg("format"), nb::kw_only(),
       nb::arg("positions") = nb::none(), nb::arg("limit_um") = nb::none(), nb::arg("limit_urad") = nb::none(),
-      nb::arg("least_reduction_percent") = 1.0, nb::arg("tool_carrier") = nb::none(), nb::arg("accept_misfit") = false,
-      nb::arg("errors_file") = "errors.toml",
+      nb::arg("least_reduction_percent") = 1.0, nb::arg("tool_carrier") = nb::none(), nb::arg("at") = AxisPositions{},
+      nb::arg("accept_misfit") = false, nb::arg("errors_file") = "errors.toml",
       "Positions and directions of rotary axes as a control with a five-axis transformation takes them.\n\n"
       "They are read back and tried in a simulated control: `abbe compensate kinematics`. format: a name of\n"
       "kinematic_formats(), such as 'siemens'. positions: per axis of the grid where deviations are stated. limit_um,\n"
       "limit_urad: larger changes of a length, of a direction or an angle are refused; least_reduction_percent: as "
       "are\n"
       "values that remove less of the displacement. tool_carrier (siemens): $TC_CARR of the tool carrier with this\n"
-      "number instead of machine data. Raises InputError, also for a machine whose chain the control does not have.\n"
+      "number instead of machine data. at: where axes stand for states that follow from the commands, mm or rad by "
+      "axis;\n"
+      "others in the middle of their travel. Raises InputError, also for a machine whose chain the control does not "
+      "have.\n"
       "Formats and method: docs/kinematic-values.md.\n\n"
       ">>> import abbe\n"
       ">>> mill = abbe.Machine.from_chain(\"w C' X' Y' b Z t\")\n"

@@ -218,7 +218,8 @@ void bind_planned_paths(nb::module_& module) {
       nb::arg("retract_mm") = 0.0, nb::arg("tolerance_um") = 0.0, nb::arg("accept_misfit") = false,
       nb::arg("errors_file") = "errors.toml", nb::arg("placement_file") = "placement.toml",
       "Axis commands that bring the tool of a calibrated machine along a curve on the workpiece.\n\n"
-      "errors: location errors and a tool offset error only. placement: where the workpiece is clamped.\n"
+      "errors: those that change along the path are corrected at every pose. placement: where the workpiece is "
+      "clamped.\n"
       "feed_mm_per_min: where the curve has none. hold: {'C2_deg': 30}, axes kept at a command. start: where axes "
       "stand\n"
       "before the path; others may stand anywhere. retract_mm: before and after each region. tolerance_um: poses are\n"

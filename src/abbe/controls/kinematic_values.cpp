@@ -12,6 +12,8 @@
 #include "abbe/controls/kinematic_format.h"
 #include "abbe/controls/travel_grid.h"
 #include "abbe/errors/calibrated_machine.h"
+#include "abbe/errors/error_states.h"
+#include "abbe/errors/errors_at_pose.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_couplings.h"
@@ -53,16 +55,28 @@ void check_values_request(const KinematicValuesRequest& request, const Kinematic
   }
 }
 
-/// What becomes of a set of errors in the values of a format.
+/// [axes] where the axes stand for states that follow from commands.
+std::vector<double> state_pose(const KinematicValuesRequest& request) {
+  std::vector<double> pose;
+  for (const Axis& axis : request.machine.axes) {
+    pose.push_back(axis.endless ? 0.0 : 0.5 * (axis.travel_min + axis.travel_max));
+  }
+  for (const HeldAxis& at : request.at) pose.at(at.axis) = at.position;
+  return pose;
+}
+
+/// What becomes of a set of errors in the values of a format. A control has one geometry for all poses: errors whose
+/// states follow from the commands are taken at one of them.
 class ValuesOfErrors {
  public:
   ValuesOfErrors(const KinematicFormat& format, const KinematicValuesRequest& request)
       : format_(format),
         carrier_(request.tool_carrier),
+        state_pose_(state_pose(request)),
         nominal_{request.machine, std::vector<double>(request.machine.axes.size(), 0.0)} {}
 
   std::vector<PlainValue> plain(const ErrorSet& errors) const {
-    CalibratedMachine calibrated = calibrated_machine(nominal_.machine, errors);
+    CalibratedMachine calibrated = calibrated_machine(nominal_.machine, at_pose(nominal_.machine, errors, state_pose_));
     for (std::size_t i = 0; i < calibrated.zero.size(); ++i) {
       if (nominal_.machine.axes[i].kind != AxisKind::rotary) calibrated.zero[i] = 0;
     }
@@ -91,6 +105,7 @@ class ValuesOfErrors {
  private:
   const KinematicFormat& format_;
   std::optional<int> carrier_;
+  std::vector<double> state_pose_;
   BelievedMachine nominal_;
 };
 
@@ -145,7 +160,7 @@ void judge_values(const KinematicValuesRequest& request, KinematicValues& made) 
 
 KinematicValues make_kinematic_values(const KinematicValuesRequest& request) {
   refuse_couplings(request.machine, "a kinematic value of a control");
-  refuse_states(request.machine, request.errors, "a kinematic value of a control");
+  refuse_states(request.machine, request.errors, "a kinematic value of a control", UsableStates::of_commands);
   const KinematicFormat& format = kinematic_format(request.format);
   check_values_request(request, format);
   const Machine& machine = request.machine;
@@ -154,6 +169,7 @@ KinematicValues make_kinematic_values(const KinematicValuesRequest& request) {
   const ValuesOfErrors values(format, request);
   KinematicValues made;
   made.format = format;
+  if (has_states(errors)) made.state_pose = state_pose(request);
   made.values = values.values(errors);
   made.settings = values.settings();
   add_uncertainties(values, request, covariance, made);
@@ -166,6 +182,10 @@ KinematicValues make_kinematic_values(const KinematicValuesRequest& request) {
   const std::unique_ptr<CommandCorrection> correction = values.correction(numbers);
   made.before = deviations_with(machine, errors, made.poses, NoCorrection());
   made.after = deviations_with(machine, errors, made.poses, *correction);
+  if (!made.state_pose.empty()) {
+    made.after_at_state_pose =
+        deviations_with(machine, at_pose(machine, errors, made.state_pose), made.poses, *correction);
+  }
   made.left_by_values = volumetric_error_with(machine, errors, made.poses, *correction);
   made.ideal = ideal_deviations(machine, errors, made.poses, made.ideal_not_reached);
   std::vector<std::size_t> unused;

@@ -5,13 +5,16 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "abbe/controls/kinematic_values_text.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/decimal_comma_for_test.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
@@ -365,6 +368,58 @@ TEST_F(KinematicValuesTest, AChangeAboveALimitIsInTheResult) {
   EXPECT_TRUE(made.says_no());
   EXPECT_TRUE(made.file.text.empty());
   EXPECT_THAT(made.refused.front(), HasSubstr("50.000 um is above --limit-um 40: $MC_TRAFO5_JOINT_OFFSET_1[1]"));
+}
+
+/// The line of C that leans as A turns: a sag of the cradle.
+KinematicValuesRequest with_sag_of(KinematicValuesRequest request, double mm_per_rad = 5e-3) {
+  request.machine.states = {{.name = "tilt", .kind = StateKind::axis, .axis = request.machine.find_axis("A")},
+                            {.name = "side", .kind = StateKind::approach, .axis = request.machine.find_axis("X")}};
+  request.errors.locations = {
+      {.axis = request.machine.find_axis("C"), .component = Component::X, .value = 20e-3},
+      {.axis = request.machine.find_axis("C"), .component = Component::X, .value = mm_per_rad, .state = 0}};
+  return request;
+}
+
+TEST_F(KinematicValuesTest, StatesThatFollowFromTheCommandsAreTakenAtOnePose) {
+  KinematicValuesRequest request = with_sag_of(request_for("siemens", "trunnion-mill"));
+  const std::size_t a = request.machine.find_axis("A");
+  request.at = {{a, 0.4}};
+  const KinematicValues made = make_kinematic_values(request);
+  EXPECT_EQ(made.refused, std::vector<std::string>{});
+  EXPECT_EQ(made.state_pose[a], 0.4);
+  KinematicValuesRequest constant = request;
+  constant.errors.locations = {
+      {.axis = request.machine.find_axis("C"), .component = Component::X, .value = 20e-3 + 0.4 * 5e-3}};
+  const KinematicValues there = make_kinematic_values(constant);
+  ASSERT_EQ(made.values.size(), there.values.size());
+  for (std::size_t k = 0; k < made.values.size(); ++k) EXPECT_EQ(made.values[k].actual, there.values[k].actual);
+  EXPECT_EQ(made.file.text, there.file.text);
+  EXPECT_TRUE(there.state_pose.empty());
+  // What the sag does elsewhere is left: 5 um per rad, and twice that where C has turned it round.
+  EXPECT_NEAR(made.after_at_state_pose.position_statistics.rms, there.after.position_statistics.rms, 1e-9);
+  EXPECT_GT(made.after.position_statistics.rms, 10 * there.after.position_statistics.rms);
+  const Axis& cradle = request.machine.axes[a];
+  const double furthest = std::max(std::abs(cradle.travel_max - 0.4), std::abs(cradle.travel_min - 0.4));
+  EXPECT_GT(made.after.position_statistics.maximum, 5e-3 * furthest);
+  EXPECT_LT(made.after.position_statistics.maximum, 2.001 * 5e-3 * furthest);
+  const KinematicValuesReport report{request.machine, made, {}, {}};
+  EXPECT_THAT(kinematic_values_text(report), HasSubstr("states that follow from the commands are taken at "));
+  EXPECT_NEAR(kinematic_values_json(report)["state_pose"]["A_deg"].get<double>(), 0.4 / kDegree, 1e-9);
+}
+
+TEST_F(KinematicValuesTest, ValuesOfOnePoseThatHarmElsewhereAreRefused) {
+  KinematicValuesRequest request = with_sag_of(request_for("siemens", "trunnion-mill"), 50e-3);
+  request.at = {{request.machine.find_axis("A"), 0.4}};
+  const KinematicValues made = make_kinematic_values(request);
+  ASSERT_EQ(made.refused.size(), 1U);
+  EXPECT_THAT(made.refused[0], HasSubstr("would be larger with the values than without"));
+  EXPECT_EQ(made.file.text, "");
+}
+
+TEST_F(KinematicValuesTest, ASideOfApproachIsNoGeometry) {
+  KinematicValuesRequest request = with_sag_of(request_for("siemens", "trunnion-mill"));
+  request.errors.locations[1].state = 1;
+  EXPECT_THAT(refused(request), HasSubstr("depends on side (approach), which a kinematic value of a control"));
 }
 
 }  // namespace

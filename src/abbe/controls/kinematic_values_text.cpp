@@ -7,6 +7,8 @@
 #include "abbe/controls/carried_text.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/machine/position_words.h"
+#include "abbe/report/evaluations/position_json.h"
 #include "abbe/report/evaluations/statistics_json.h"
 #include "abbe/report/words/state_words.h"
 #include "abbe/report/words/volumetric_words.h"
@@ -53,6 +55,10 @@ std::string kinematic_values_text(const KinematicValuesReport& report) {
   text += fmt::format("convention: {}\n", made.format.convention);
   if (!made.format.unverified.empty()) text += fmt::format("EXPERIMENTAL, not verified: {}\n", made.format.unverified);
   text += state_line(report.partial.at_state);
+  if (!made.state_pose.empty()) {
+    text += fmt::format("states that follow from the commands are taken at {}\n",
+                        position_words(report.machine, made.state_pose));
+  }
   text += "values, nominal and with the location errors:\n";
   for (const KinematicValue& value : made.values) text += value_line(value);
   text +=
@@ -66,6 +72,9 @@ std::string kinematic_values_text(const KinematicValuesReport& report) {
                       made.poses.count());
   text += deviations_line("nominal values", made.before);
   text += deviations_line("with these values", made.after);
+  if (!made.state_pose.empty()) {
+    text += deviations_line("the same, states as at that pose everywhere", made.after_at_state_pose);
+  }
   text += deviations_line("ideal compensation", made.ideal);
   if (made.ideal_not_reached > 0) {
     text += fmt::format("  (ideal: the point is not reached at {} poses)\n", made.ideal_not_reached);
@@ -94,6 +103,10 @@ nlohmann::ordered_json kinematic_values_json(const KinematicValuesReport& report
   json["volumetric_error_left_by_values_um"] = statistics_um(made.left_by_values);
   json["before"] = deviations_json(made.before);
   json["after"] = deviations_json(made.after);
+  if (!made.state_pose.empty()) {
+    json["state_pose"] = position_json(report.machine, made.state_pose);
+    json["after_at_state_pose"] = deviations_json(made.after_at_state_pose);
+  }
   json["ideal"] = deviations_json(made.ideal);
   json["ideal_not_reached"] = made.ideal_not_reached;
   add_partial_errors(report.partial, json);

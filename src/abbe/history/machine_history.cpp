@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "abbe/errors/error_states.h"
 #include "abbe/formats/files/results_files.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/calendar_date.h"
@@ -19,7 +20,8 @@ namespace abbe {
 namespace {
 
 constexpr std::int64_t kApplication = 0x41626265;  // "Abbe", in the header of the file
-constexpr std::int64_t kForm = 1;
+// An abbe that knows form 1 alone refuses errors with states, campaign by campaign. It says more if the form is later.
+constexpr std::int64_t kFormWithoutStates = 1, kForm = 2;
 
 std::string now_text() {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
@@ -54,7 +56,7 @@ void require_history(SqliteDatabase& database) {
 }
 
 void make_history(SqliteDatabase& database) {
-  database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", kApplication, kForm));
+  database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", kApplication, kFormWithoutStates));
   database.run(
       "CREATE TABLE campaign (number INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL, measured TEXT NOT NULL, "
       "added TEXT NOT NULL, abbe_version TEXT NOT NULL, source TEXT NOT NULL, machine_toml TEXT NOT NULL, "
@@ -70,7 +72,8 @@ void make_history(SqliteDatabase& database) {
 /// One campaign that cannot be read again would make the whole history unreadable.
 void require_readable(const IdentifiedCampaign& one) {
   const Machine machine = parse_machine(machine_text(one.machine), one.errors_file);
-  static_cast<void>(parse_errors(errors_text(one.machine, one.errors), one.errors_file, machine));
+  static_cast<void>(
+      parse_errors(errors_text(one.machine, one.errors), one.errors_file, machine, StatesOfErrors::allowed));
 }
 
 /// What can be wrong with campaigns whatever is in the history: before a file is made.
@@ -150,7 +153,7 @@ CampaignToKeep campaign_to_keep(const std::string& path, const std::string& mach
   std::optional<Machine> machine;
   if (!machine_file.empty()) machine = read_machine(machine_file);
   CampaignToKeep result;
-  result.campaign = read_campaign(path, machine);
+  result.campaign = read_campaign(path, machine, StatesOfErrors::allowed);
   result.measured = measured;
   result.source = path;
   if (is_results_folder(path)) result.summary = results_summary_text(path);
@@ -173,7 +176,10 @@ std::vector<std::int64_t> add_to_history(const std::string& path, const std::vec
   const std::string added = now_text();
   std::vector<std::int64_t> numbers;
   numbers.reserve(campaigns.size());
-  for (const CampaignToKeep& one : campaigns) numbers.push_back(add_one(database, one, added));
+  for (const CampaignToKeep& one : campaigns) {
+    numbers.push_back(add_one(database, one, added));
+    if (has_states(one.campaign.errors.errors)) database.run(fmt::format("PRAGMA user_version = {};", kForm));
+  }
   transaction.commit();
   return numbers;
 }
@@ -200,7 +206,7 @@ std::vector<KeptCampaign> read_history(const std::string& path) {
     kept.abbe_version = rows.text(4);
     kept.source = rows.text(5);
     kept.campaign.machine = parse_machine(rows.text(6), where);
-    kept.campaign.errors = parse_errors(rows.text(7), where, kept.campaign.machine);
+    kept.campaign.errors = parse_errors(rows.text(7), where, kept.campaign.machine, StatesOfErrors::allowed);
     const std::string covariance = rows.text(8);
     const std::size_t p = kept.campaign.errors.errors.parameter_count();
     if (covariance.size() == p * p * sizeof(double)) {

@@ -7,6 +7,7 @@
 
 #include "abbe/formats/text/input_error.h"
 #include "abbe/history/trend_report.h"
+#include "abbe/history/trend_states.h"
 #include "abbe/study/compared_campaigns.h"
 
 namespace abbe {
@@ -62,13 +63,15 @@ std::vector<KeptCampaign> newest(const TrendRequest& request) {
 
 class TrendSearch {
  public:
-  TrendSearch(const std::vector<KeptCampaign>& campaigns, const ComparedCampaigns& compared, double limit)
-      : campaigns_(campaigns), compared_(compared), limit_(limit) {}
+  TrendSearch(const std::vector<KeptCampaign>& campaigns, const CampaignsAtState& there,
+              const ComparedCampaigns& compared, double limit)
+      : campaigns_(campaigns), there_(there), compared_(compared), limit_(limit) {}
 
   ErrorTrend trend_of(const ComparedError& model) const {
     ErrorTrend trend;
     trend.name = model.name;
     trend.words = model.words;
+    trend.per = model.per;
     trend.is_angle = model.is_angle;
     if (model.name == kToolOffset) {
       trend.not_followed = "it is a vector, whose length has no direction";
@@ -99,12 +102,14 @@ class TrendSearch {
     trend.expanded_per_year = kDaysPerYear * trend.trend.coverage_factor * trend.trend.u_slope;
     for (std::size_t k = 2; k <= trend.values.size(); ++k) {
       trend.predicted.push_back(
-          expected_last({trend.values.begin(), trend.values.begin() + static_cast<std::ptrdiff_t>(k)}));
+          expected_last({trend.values.begin(), trend.values.begin() + static_cast<std::ptrdiff_t>(k)},
+                        wander(trend.campaigns[k - 2], trend)));
     }
     trend.expected = trend.predicted.back();
     if (limit_ > 0 && trend.at_tool > 0) {
       const std::optional<double> days =
-          time_to_limit(trend.trend, trend.values.back().uncertainty, limit_ / trend.at_tool, kLongestDays);
+          time_to_limit(trend.trend, trend.values.back().uncertainty, limit_ / trend.at_tool, kLongestDays,
+                        wander(trend.campaigns.back(), trend));
       const Date last = campaigns_[trend.campaigns.back()].measured;
       if (days) trend.due = last + std::chrono::days(static_cast<int>(std::floor(*days)));
     }
@@ -140,12 +145,36 @@ class TrendSearch {
     trend.values.push_back({0, 0, u_first});
     trend.campaigns.insert(trend.campaigns.begin(), 0);
     trend.values.insert(trend.values.end(), later.begin(), later.end());
+    if (there_.extrapolated.empty()) return;
+    for (const std::size_t k : trend.campaigns) {
+      const std::vector<std::string>& names = there_.extrapolated[k];
+      trend.extrapolated.push_back(std::find(names.begin(), names.end(), trend.name) != names.end() ? 1 : 0);
+    }
+  }
+
+  double wander(std::size_t campaign, const ErrorTrend& trend) const {
+    return wander_per_day(there_.campaigns[campaign], trend.name, trend.at);
   }
 
   const std::vector<KeptCampaign>& campaigns_;
+  const CampaignsAtState& there_;
   const ComparedCampaigns& compared_;
   double limit_;
 };
+
+/// Coefficients with states that later campaigns have and the first one does not: there is nothing to follow them from.
+void add_missing_in_first(const ComparedCampaigns& compared, std::vector<std::string>& known, MachineTrends& trends) {
+  for (const ComparedPair& pair : compared.pairs) {
+    if (pair.first != 0) continue;
+    for (const std::string& name : pair.only_second) {
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      known.push_back(name);
+      ErrorTrend& trend = trends.errors.emplace_back();
+      trend.name = trend.words = name;
+      trend.not_followed = "the first campaign does not have it";
+    }
+  }
+}
 
 }  // namespace
 
@@ -167,12 +196,15 @@ MachineTrends find_trends(const TrendRequest& request, const JobOptions& options
     sources.push_back(date_text(one.measured));
   }
   make_names_different(compare.campaigns, sources);
+  const CampaignsAtState there = campaigns_at_state(std::move(compare.campaigns), request.states);
+  compare.campaigns = there.campaigns;
   const ComparedCampaigns compared = compare_campaigns(compare, options);
 
   MachineTrends trends;
   trends.names = compared.names;
+  trends.at_state = there.at_state;
   for (const KeptCampaign& one : campaigns) trends.dates.push_back(one.measured);
-  const TrendSearch search(campaigns, compared, request.limit_mm);
+  const TrendSearch search(campaigns, there, compared, request.limit_mm);
   std::vector<std::string> known;
   for (const ComparedPair& pair : compared.pairs) {
     for (const ComparedError& error : pair.errors) {
@@ -181,6 +213,7 @@ MachineTrends find_trends(const TrendRequest& request, const JobOptions& options
       trends.errors.push_back(search.trend_of(error));
     }
   }
+  if (!there.at_state.empty()) add_missing_in_first(compared, known, trends);
   for (const ErrorTrend& one : trends.errors) {
     if (!one.due || (trends.next && *trends.next <= *one.due)) continue;
     trends.next = one.due;

@@ -106,7 +106,7 @@ Trend fit_trend(const std::vector<TimedValue>& values) {
   return trend;
 }
 
-Expected expected_last(const std::vector<TimedValue>& values) {
+Expected expected_last(const std::vector<TimedValue>& values, double wander) {
   if (values.size() < 2) throw std::invalid_argument("there is no earlier value");
   const TimedValue& last = values.back();
   const std::vector<TimedValue> earlier(values.begin(), values.end() - 1);
@@ -122,15 +122,17 @@ Expected expected_last(const std::vector<TimedValue>& values) {
     const double u = trend.u_at(after), scatter = trend.scatter.value_or(0);
     variance += u * u + scatter * scatter;
   }
+  variance += wander * (last.time - earlier.back().time);
   expected.expanded = factor * std::sqrt(variance);
   expected.is_within = std::abs(last.value - expected.value) <= expected.expanded;
   return expected;
 }
 
-std::optional<double> time_to_limit(const Trend& trend, double u_last, double limit, double longest) {
+std::optional<double> time_to_limit(const Trend& trend, double u_last, double limit, double longest, double wander) {
   const double scatter = trend.scatter.value_or(0);
   const auto reached = [&](double t) {
-    const double u = std::sqrt(u_last * u_last + scatter * scatter + t * t * trend.u_slope * trend.u_slope);
+    const double u =
+        std::sqrt(u_last * u_last + scatter * scatter + t * t * trend.u_slope * trend.u_slope + wander * t);
     return std::abs(trend.slope) * t + trend.coverage_factor * u >= limit;
   };
   if (reached(0)) return 0.0;

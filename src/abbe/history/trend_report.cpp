@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/machine/state_option.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/report/drawings/svg_plot.h"
 
@@ -18,15 +19,25 @@ double shown(const ErrorTrend& trend, double value) { return value * (trend.is_a
 
 /// With one decimal, and no minus before a zero.
 std::string tenths(double value) { return fmt::format("{:.1f}", std::round(10 * value) / 10 + 0.0); }
+/// Coefficients with a state are small numbers.
+std::string digits(const ErrorTrend& trend, double value) {
+  return trend.per.empty() ? tenths(value) : fmt::format("{:.3f}", std::round(1e3 * value) / 1e3 + 0.0);
+}
 
 /// In keys.
 const char* unit_of(const ErrorTrend& trend) { return trend.is_angle ? "urad" : "um"; }
 /// For people.
-std::string symbol_of(const ErrorTrend& trend) { return unit_symbol(unit_of(trend)); }
+std::string symbol_of(const ErrorTrend& trend) {
+  return unit_symbol(unit_of(trend)) + (trend.per.empty() || trend.per == "1" ? std::string() : " / " + trend.per);
+}
+
+bool any_extrapolated(const ErrorTrend& trend) {
+  return std::find(trend.extrapolated.begin(), trend.extrapolated.end(), 1) != trend.extrapolated.end();
+}
 
 /// "-3.2 \u00b1 1.1", rounded as in tables.
 std::string with_uncertainty(const ErrorTrend& trend, double value, double expanded) {
-  return tenths(shown(trend, value)) + " \xC2\xB1 " + tenths(shown(trend, expanded));
+  return digits(trend, shown(trend, value)) + " \xC2\xB1 " + digits(trend, shown(trend, expanded));
 }
 
 std::string place_of(const ErrorTrend& trend) {
@@ -43,6 +54,7 @@ std::string due_words(const ErrorTrend& trend, double limit_mm) {
 std::string verdict_words(const ErrorTrend& trend) {
   std::string words = trend.drifts ? "drifts" : "no drift proven";
   if (trend.expected && !trend.expected->is_within) words += "; last value unexpected";
+  if (any_extrapolated(trend)) words += "; extrapolated in some campaigns";
   return words;
 }
 
@@ -87,7 +99,7 @@ EvaluationTable trend_table(const MachineTrends& trends, double limit_mm) {
     const double u = std::hypot(last.uncertainty, one->values.front().uncertainty);
     table.rows.push_back({one->name, place_of(*one), symbol_of(*one), with_uncertainty(*one, last.value, 2 * u),
                           with_uncertainty(*one, one->per_year, one->expanded_per_year),
-                          one->trend.scatter ? tenths(shown(*one, *one->trend.scatter)) : "not known",
+                          one->trend.scatter ? digits(*one, shown(*one, *one->trend.scatter)) : "not known",
                           verdict_words(*one)});
     if (limit_mm > 0) table.rows.back().push_back(due_words(*one, limit_mm));
     table.sparklines.push_back(course_of(*one));
@@ -147,6 +159,7 @@ EvaluationPlot trend_plot(const MachineTrends& trends, const ErrorTrend& trend) 
 }
 
 void add_notes(const MachineTrends& trends, double limit_mm, EvaluationReport& report) {
+  for (const std::string& sentence : trends.at_state.outside) report.notes.push_back(sentence + ".");
   if (trends.names.size() == 2) {
     report.notes.emplace_back(
         "Two campaigns always lie on a line, so the scatter from campaign to campaign is not known, and what is "
@@ -157,7 +170,7 @@ void add_notes(const MachineTrends& trends, double limit_mm, EvaluationReport& r
     if (!one.expected || one.expected->is_within) continue;
     report.notes.push_back(
         fmt::format("{} has changed by {} {} up to the last campaign; the earlier campaigns predict {} {}.", one.name,
-                    tenths(shown(one, one.values.back().value)), symbol_of(one),
+                    digits(one, shown(one, one.values.back().value)), symbol_of(one),
                     with_uncertainty(one, one.expected->value, one.expected->expanded), symbol_of(one)));
   }
   if (limit_mm > 0 && trends.next) {
@@ -174,12 +187,14 @@ nlohmann::ordered_json trend_json(const ErrorTrend& one, double limit_mm) {
     json["not_followed"] = *one.not_followed;
     return json;
   }
+  if (!one.per.empty()) json["per"] = one.per;
   if (one.at) json[one.at_is_angle ? "at_deg" : "at_mm"] = one.at_is_angle ? *one.at / kDegree : *one.at;
   for (const TimedValue& value : one.values) {
     json["days"].push_back(value.time);
     json["change_" + unit].push_back(shown(one, value.value));
     json["standard_uncertainty_" + unit].push_back(shown(one, value.uncertainty));
   }
+  for (const std::uint8_t is : one.extrapolated) json["extrapolated"].push_back(is != 0);
   // Nothing predicts the first value.
   json["control_low_" + unit] = json["control_high_" + unit] = nlohmann::ordered_json::array({nullptr});
   for (const Expected& expected : one.predicted) {
@@ -225,6 +240,7 @@ EvaluationReport trend_report(const MachineTrends& trends, const TrendRequest& r
   add_count("unexpected", "of these, with a last value outside what the earlier ones predict", unexpected);
   report.facts = {{"campaigns", fmt::format("{}, {} to {}", trends.names.size(), date_text(trends.dates.front()),
                                             date_text(trends.dates.back()))}};
+  if (!trends.at_state.empty()) report.facts.emplace_back("errors at the state", state_words(trends.at_state));
   if (request.limit_mm > 0) {
     report.facts.emplace_back(
         "limit", fmt::format("{:g} {} at the tool, for each error", 1e3 * request.limit_mm, unit_symbol("um")));
@@ -235,6 +251,8 @@ EvaluationReport trend_report(const MachineTrends& trends, const TrendRequest& r
   for (std::size_t k = 0; k < trends.names.size(); ++k) {
     report.details["campaigns"].push_back({{"name", trends.names[k]}, {"day", date_text(trends.dates[k])}});
   }
+  for (const auto& [column, value] : trends.at_state) report.details["at_state"][column] = value;
+  for (const std::string& one : trends.at_state.outside) report.details["states_outside_measured"].push_back(one);
   if (request.limit_mm > 0) {
     report.details["limit_um"] = 1e3 * request.limit_mm;
     report.details["measure_again_by"] = trends.next ? nlohmann::ordered_json(date_text(*trends.next)) : nullptr;

@@ -32,7 +32,7 @@ class IdentifiedCurve {
     Eigen::Index first = 0;
     for (std::size_t m = 0; m < errors.motions.size(); ++m) {
       const ErrorMotion& motion = errors.motions[m];
-      if (motion.axis == axis && motion.component == component) curve.add(m, first);
+      if (motion.axis == axis && motion.component == component && motion.state == kNoState) curve.add(m, first);
       first += static_cast<Eigen::Index>(motion.basis.size());
     }
     return curve.terms_.empty() ? std::nullopt : std::optional(std::move(curve));
@@ -168,6 +168,7 @@ std::vector<CustomerFigure> customer_error_figures(const CustomerErrors& of) {
     }
   }
   for (const LocationError& location : errors.locations) {
+    if (location.state != kNoState) continue;
     const bool angle = is_rotation(location.component);
     const std::string direction = letter(component_at(static_cast<int>(location.component) % 3));
     const std::string name = customer_text(angle ? Word::orientation : Word::offset, language,

@@ -9,10 +9,11 @@ namespace abbe {
 
 // Parts of a study's customer report.
 
-/// Identified errors of a machine in one state.
+/// Identified errors of a machine before or after a correction. Those that still have a state, which follows from the
+/// commands, are in maps alone: the figures hold where their factors are zero.
 struct CustomerErrors {
   const Machine& machine;
-  const ErrorSet& errors;
+  ErrorSet errors;
   Eigen::MatrixXd covariance;  ///< of the parameters of the errors, mm and rad; 0 x 0: not stated
   ReportLanguage language;
 };

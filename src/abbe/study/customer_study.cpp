@@ -17,6 +17,7 @@
 #include "abbe/report/evaluations/partial_errors.h"
 #include "abbe/study/compared_campaigns.h"
 #include "abbe/study/customer_errors.h"
+#include "abbe/study/customer_states.h"
 #include "abbe/study/summary.h"
 #include "abbe/study/trust.h"
 
@@ -32,13 +33,15 @@ constexpr const char* kMeanVolumetric = "V_mean";
 std::string tolerance_name(const std::string& symbol, bool angle) { return symbol + "_" + micro_unit(angle); }
 
 CustomerErrors identified_errors(const Study& study, const StudyResult& result) {
-  const ErrorSet& errors = result.identification.errors;
-  return {study.machine, errors, machine_covariance(result.identification, errors.parameter_count()),
-          study.report.facts->language};
+  ErrorsFile file = errors_for_customer(study.machine, identified_for_customer(study, result));
+  return {study.machine, std::move(file.errors), std::move(file.covariance), study.report.facts->language};
 }
 
 CustomerErrors earlier_errors(const Study& study, const EarlierResult& before) {
-  return {study.machine, before.errors.errors, covariance_of(before.errors), study.report.facts->language};
+  ErrorsFile file = before.errors;
+  file.covariance = covariance_of(file);
+  file = errors_for_customer(study.machine, std::move(file));
+  return {study.machine, std::move(file.errors), std::move(file.covariance), study.report.facts->language};
 }
 
 /// Of the poses, the largest with its expanded uncertainty, and the mean; um. In two states, the second without values.
@@ -112,24 +115,6 @@ void add_figures_before(const Study& study, const StudyResult& result, std::vect
   }
 }
 
-/// Why nothing is proven of a state; empty: verdicts are given.
-std::string without_verdict(bool is_refused, bool is_simulated, ReportLanguage language) {
-  if (is_refused) return std::string(customer_word(Word::without_trust, language));
-  return is_simulated ? std::string(customer_word(Word::without_simulation, language)) : std::string();
-}
-
-std::vector<CustomerState> states_of(const StudyResult& result, bool is_refused, ReportLanguage language) {
-  const auto word = [&](Word what) { return std::string(customer_word(what, language)); };
-  const std::string now = without_verdict(is_refused, result.campaign.truth.has_value(), language);
-  if (!result.before) {
-    return {{word(Word::measured), now}, {word(Word::predicted_after), word(Word::without_measurement)}};
-  }
-  const ErrorsFile& before = result.before->errors;
-  const bool was_refused = !before.distrusted.empty() && !before.misfit_accepted;
-  return {{word(Word::before), without_verdict(was_refused, result.before->is_simulated, language)},
-          {word(Word::after), now}};
-}
-
 std::vector<std::string> notes_of(const Study& study, const StudyResult& result) {
   std::vector<std::string> notes;
   if (result.before) {
@@ -137,7 +122,11 @@ std::vector<std::string> notes_of(const Study& study, const StudyResult& result)
       notes.push_back("before: not to be trusted: " + reason);
     }
   }
-  if (result.usable()) notes.push_back(study_verdict(study, result));
+  if (result.usable()) {
+    notes.push_back(study_verdict(study, result));
+    for (std::string& note : customer_state_notes(study.machine, identified_for_customer(study, result)))
+      notes.push_back(std::move(note));
+  }
   for (const std::string& warning : study_warnings(study, result)) notes.push_back(warning);
   if (result.map && result.map->before.statistics.excluded > 0) notes.push_back(left_out_words(result.map->left_out()));
   if (!result.not_identified.errors.empty()) {
@@ -218,7 +207,7 @@ void check_customer_report(const Study& study) {
 
 EarlierResult read_earlier_result(const Study& study) {
   const std::string path = study.report.before->string();
-  const IdentifiedCampaign campaign = read_campaign(path, study.machine);
+  const IdentifiedCampaign campaign = read_campaign(path, study.machine, StatesOfErrors::allowed);
   EarlierResult before{campaign.name, campaign.errors};
   if (is_results_folder(path)) {
     const std::string summary = results_summary_text(path);
@@ -241,7 +230,7 @@ CustomerReport study_customer_report(const Study& study, const StudyResult& resu
   }
   report.is_simulated = result.campaign.truth.has_value();
   const bool is_refused = !result.usable() || (!result.distrusted.empty() && !result.misfit_accepted);
-  report.states = states_of(result, is_refused, language);
+  report.states = customer_states(study, result, is_refused, language);
   if (!result.usable()) report.refusals.push_back(study_verdict(study, result));
   for (const Distrust& reason : result.distrusted) {
     (is_refused ? report.refusals : report.notes).push_back("Not to be trusted: " + reason.text + ".");
@@ -270,12 +259,14 @@ std::string study_qif_results(const Study& study, const StudyResult& result) {
 }
 
 std::string study_certificate(const Study& study, const StudyResult& result) {
-  const ErrorSet& identified = result.identification.errors;
+  // At the state at which the figures hold: nothing is per unit of a state that the certificate cannot name.
+  CustomerErrors certified = identified_errors(study, result);
+  const ErrorSet& identified = certified.errors;
   CertifiedErrors errors;
   errors.names = parameter_names(study.machine, identified);
   errors.is_angle = parameters_are_angles(study.machine, identified);
   errors.values = identified.parameters();
-  errors.covariance = machine_covariance(result.identification, identified.parameter_count());
+  errors.covariance = std::move(certified.covariance);
   for (std::size_t i = 0; i < errors.values.size(); ++i) {
     const double scale = micro_per_unit(errors.is_angle[i]);
     errors.values[i] *= scale;

@@ -10,21 +10,18 @@
 #include "abbe/formats/machine/machine_couplings.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/study/path_errors.h"
 
 namespace abbe {
 namespace {
 
-CalibratedMachine calibrated_for_path(const PathRequest& request) {
+CalibratedMachine calibrated_for_path(const PathRequest& request, PlannedPath& planned) {
   if (!request.errors) return {request.machine, std::vector<double>(request.machine.axes.size(), 0.0), {}};
   refuse_couplings(request.machine, "a path with errors");
-  refuse_states(request.machine, request.errors->errors, "a path");
-  CalibratedMachine calibrated = calibrated_machine(request.machine, request.errors->errors);
-  if (!calibrated.variable.empty()) {
-    throw InputError({.file = request.errors_file, .field = calibrated.variable},
-                     "an error motion, which depends on the position of its axis",
-                     "location errors and a tool offset error only: what changes the geometry of the machine once");
-  }
-  return calibrated;
+  refuse_states(request.machine, request.errors->errors, "a path", UsableStates::of_motions);
+  ErrorsOfPath errors = errors_of_path(request.machine, request.errors->errors);
+  planned.errors_along = std::move(errors.along);
+  return calibrated_machine(request.machine, errors.constant);
 }
 
 /// The curve with a feed wherever the tool works, and positions for commands.
@@ -81,8 +78,8 @@ void refuse_bad_request(const ToolPath& path, const PathRequest& request) {
 }  // namespace
 
 PlannedPath plan_path(const PathRequest& request) {
-  const CalibratedMachine calibrated = calibrated_for_path(request);
   PlannedPath result;
+  const CalibratedMachine calibrated = calibrated_for_path(request, result);
   result.machine = calibrated.machine;
   result.curve_file = request.curve_file;
   if (request.errors) result.at_state = request.errors->at_state;
@@ -106,6 +103,12 @@ PlannedPath plan_path(const PathRequest& request) {
     result.commands.push_back(std::move(row));
   }
   result.miss = largest_miss(result.machine, curve, result.path);
+  if (!result.errors_along.empty()) {
+    Machine nominal = request.machine;
+    if (request.placement) nominal = with_workpiece(nominal, request.placement->placement);
+    correct_along_path(request, nominal, calibrated.zero, curve, result);
+    if (!result.refused.empty()) return result;
+  }
   if (result.path.status == ToolPathStatus::jumps_while_working) {
     result.refused = result.path.message + ": another start (--start), a held axis, or a cut of the curve there";
   }

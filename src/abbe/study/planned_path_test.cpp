@@ -107,8 +107,11 @@ TEST(PlannedPathOfACurve, WhatCannotBeAnsweredIsNamedByItsOption) {
   request.errors =
       parse_errors("[[motion]]\nname = \"EXX\"\nbasis = \"legendre\"\norder = 1\ncoefficients_um = [0, 5]\n",
                    "x.errors.toml", request.machine);
-  EXPECT_THAT(problem(request), HasSubstr("x.errors.toml"));
-  EXPECT_THAT(problem(request), HasSubstr("EXX: an error motion, which depends on the position of its axis"));
+  // An error motion is corrected at every pose.
+  const PlannedPath along = plan_path(request);
+  EXPECT_EQ(along.refused, "");
+  EXPECT_EQ(along.errors_along, std::vector<std::string>{"EXX"});
+  EXPECT_LT(along.miss.distance, 1e-9);
   const PlannedPath planned = plan_path(engraved_table());
   EXPECT_THAT(message_of([&] { planned_path_file(planned, "a.txt"); }), HasSubstr("a.txt: unknown kind of program"));
 }

@@ -27,12 +27,17 @@ std::string planned_path_file(const PlannedPath& planned, const std::string& nam
 }
 
 std::string planned_path_text(const PlannedPath& planned) {
-  return path_text(planned.machine, planned.path, planned.miss) + state_line(planned.at_state);
+  std::string text = path_text(planned.machine, planned.path, planned.miss) + state_line(planned.at_state);
+  if (!planned.errors_along.empty()) {
+    text += fmt::format("corrected at every pose: {}\n", fmt::join(planned.errors_along, ", "));
+  }
+  return text;
 }
 
 nlohmann::ordered_json planned_path_json(const PlannedPath& planned) {
   nlohmann::ordered_json json = path_json(planned.machine, planned.path, planned.miss);
   add_state(planned.at_state, json);
+  if (!planned.errors_along.empty()) json["errors_along"] = planned.errors_along;
   if (!planned.warnings.empty()) json["warnings"] = planned.warnings;
   return json;
 }

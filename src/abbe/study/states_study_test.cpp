@@ -14,6 +14,7 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/message_of.h"
+#include "abbe/study/customer_study.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/trust.h"
 
@@ -252,6 +253,41 @@ TEST(StatesStudy, PosesWithoutTheStatesOfTheTruthAreRefused) {
   EXPECT_EQ(message_of([&] { gather_readings(study_in(folder, true)); }),
             "tracker: the true errors depend on ambient, which is not given at all poses; expected poses from a file "
             "with a column ambient_degC, or with time_s and channels that have ambient_degC");
+}
+
+TEST(StatesStudy, ACustomerReportHoldsAtTheReferences) {
+  const std::filesystem::path folder = arm_folder("states_customer");
+  Study study = study_in(folder, true);
+  study.report.facts.emplace();
+  StudyResult result = run_study(study, {.map = false});
+  EarlierResult& before = result.before.emplace();
+  before.errors = identified_errors_file(study, result);
+  result.campaign.truth.reset();  // as if it had been measured
+  const CustomerReport report = study_customer_report(study, result);
+  // By another route: the error motion at ambient 20 degC and no payload.
+  const std::size_t x = study.machine.find_axis("X");
+  const std::vector<double> factors =
+      state_factors(study.machine, std::vector<double>(3, 0.0), std::vector<double>{20, 0, 0, 0, 0});
+  double low = 1, high = -1;
+  for (int i = 0; i <= 120; ++i) {
+    const double value = result.identification.errors.evaluate(x, -500 + 1000.0 * i / 120, factors)[0];
+    low = std::min(low, value), high = std::max(high, value);
+  }
+  std::size_t exx = 0;
+  for (const CustomerFigure& figure : report.figures) {
+    EXPECT_EQ(figure.symbol.find('*'), std::string::npos);
+    if (figure.symbol == "V_max") EXPECT_GT(*figure.states[1].expanded_uncertainty, 0);
+    if (figure.symbol != "EXX") continue;
+    ++exx;
+    EXPECT_NEAR(*figure.states[1].value, 1e3 * (high - low), 1e-9);
+    EXPECT_NEAR(*figure.states[0].value, *figure.states[1].value, 1e-9);
+  }
+  EXPECT_EQ(exx, 1U);
+  EXPECT_THAT(report.notes, testing::Contains("The figures hold at the state ambient_degC = 20, payload_kg = 0."));
+  EXPECT_EQ(report.states[1].no_verdict, "");
+  before.errors.covered[0].from = 21;
+  EXPECT_THAT(study_customer_report(study, result).states[0].no_verdict,
+              HasSubstr("Outside the states that the readings cover: ambient_degC = 20"));
 }
 
 }  // namespace

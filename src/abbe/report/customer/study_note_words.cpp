@@ -59,6 +59,25 @@ constexpr NoteWord kStudyNotes[] = {
       "{2}-Fache.",
       "读数残差：不含 {1} 个异常值时为所给不确定度的 {0} 倍，含之为 {2} 倍。",
       "測定値の残差：{1} 個の外れ値を除き記載された不確かさの {0} 倍、含めると {2} 倍。"}},
+    // States.
+    {"The figures hold at the state {}.",
+     {"Die Werte gelten im Zustand {0}.", "各数值适用于状态 {0}。", "各値は状態 {0} におけるものです。"}},
+    {"The readings cover {}; beyond, errors are extrapolated: their uncertainty grows with the distance, and nothing "
+     "is "
+     "proven.",
+     {"Die Messwerte decken {0} ab; außerhalb sind die Abweichungen extrapoliert: Ihre Unsicherheit wächst mit dem "
+      "Abstand, und nichts ist nachgewiesen.",
+      "读数覆盖 {0}；超出此范围的误差为外推值：不确定度随距离增大，且未得到任何证明。",
+      "測定値の範囲は {0} です。これを超えると誤差は外挿となり、不確かさは距離とともに増大し、何も証明されません。"}},
+    {"Outside the states that the readings cover: {}.",
+     {"Außerhalb der von den Messwerten abgedeckten Zustände: {0}.", "超出读数所覆盖的状态：{0}。",
+      "測定値の範囲外の状態：{0}。"}},
+    {"States that follow from the commands are in the volumetric error; the other figures hold where the factors of "
+     "these errors are zero: {}.",
+     {"Zustände, die aus den Sollwerten folgen, sind in der volumetrischen Abweichung enthalten; die übrigen Werte "
+      "gelten dort, wo die Faktoren dieser Abweichungen null sind: {0}.",
+      "由指令得出的状态已计入体积误差；其余数值适用于以下误差的因子为零之处：{0}。",
+      "指令から定まる状態は空間誤差に含まれます。他の値は次の誤差の係数が零となる所で成り立ちます：{0}。"}},
     // What is not identified, and what the readings leave open.
     {"Not identified and taken as zero: {}.",
      {"Nicht ermittelt und als null angenommen: {0}.", "未辨识、按零处理：{0}。", "同定せず零とみなしたもの：{0}。"}},
