@@ -72,7 +72,8 @@ std::size_t read_state_of_error(TomlTable& table, const Machine& machine, States
 }
 
 /// Tables `expansion`: error motions like the others, which follow those of the file. @throws InputError
-void read_expansions(TomlTable& root, const Machine& machine, StatesOfErrors states, ErrorSet& errors) {
+std::vector<ScaleExpansion> read_expansions(TomlTable& root, const Machine& machine, StatesOfErrors states,
+                                            ErrorSet& errors) {
   std::vector<ScaleExpansion> expansions;
   for (TomlTable& table : root.tables("expansion")) {
     if (table.has("state")) read_state_of_error(table, machine, states);
@@ -84,6 +85,33 @@ void read_expansions(TomlTable& root, const Machine& machine, StatesOfErrors sta
     const std::vector<ErrorMotion> terms = expansion_terms(machine, expansions.back());
     errors.motions.insert(errors.motions.end(), terms.begin(), terms.end());
   }
+  return expansions;
+}
+
+/// Covariance of errors that state their standard uncertainties, with what expansions share; 0 x 0: they share nothing.
+/// @param first  parameter with which the expansions begin
+Eigen::MatrixXd covariance_with_thermometers(const Machine& machine, const ErrorSet& errors,
+                                             const std::vector<ScaleExpansion>& expansions, std::size_t first) {
+  Eigen::MatrixXd covariance;
+  struct Shared {
+    const ScaleExpansion* expansion;
+    Eigen::Index parameter;
+  };
+  std::vector<Shared> before;
+  for (const ScaleExpansion& expansion : expansions) {
+    const std::vector<ErrorMotion> terms = expansion_terms(machine, expansion);
+    for (const ErrorMotion& term : terms) first += term.coefficients.size();
+    if (expansion.thermometer.empty()) continue;
+    const Shared one{&expansion, static_cast<Eigen::Index>(first) - 1};
+    for (const Shared& other : before) {
+      if (other.expansion->thermometer != expansion.thermometer) continue;
+      if (covariance.size() == 0) covariance = stated_variances(errors);
+      const double product = thermometer_effect(machine, expansion) * thermometer_effect(machine, *other.expansion);
+      covariance(one.parameter, other.parameter) = covariance(other.parameter, one.parameter) = product;
+    }
+    before.push_back(one);
+  }
+  return covariance;
 }
 
 /// What no error of an axis is, and from where on a computation need not have a result.
@@ -277,7 +305,8 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     table.finish();
     errors.motions.push_back(std::move(motion));
   }
-  read_expansions(root, machine, states, errors);
+  const std::size_t first_expansion = errors.parameters().size() - 3;  // the last are those of the tool offset
+  const std::vector<ScaleExpansion> expansions = read_expansions(root, machine, states, errors);
   for (TomlTable& table : root.tables("location")) {
     LocationError location;
     read_name(table, machine, true, location.axis, location.component);
@@ -339,6 +368,9 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     contents.covariance = parse_covariance(file.text(), csv.string(), machine, errors);
   }
   root.text_or("covariance", "");
+  if (contents.covariance.size() == 0) {
+    contents.covariance = covariance_with_thermometers(machine, errors, expansions, first_expansion);
+  }
   root.finish();
   return contents;
 }

@@ -27,6 +27,18 @@ ScaleExpansion read_expansion_place(TomlTable& table, const Machine& machine) {
   expansion.fixed_point = table.number_or("fixed_point", Quantity::length, 0);
   expansion.temperature_uncertainty =
       table.size_or("temperature_standard_uncertainty", Quantity::temperature_difference, 0);
+  expansion.thermometer = table.text_or("thermometer", "");
+  expansion.thermometer_uncertainty =
+      table.size_or("thermometer_standard_uncertainty", Quantity::temperature_difference, 0);
+  if (expansion.thermometer.empty() && expansion.thermometer_uncertainty > 0) {
+    table.fail("thermometer", "is missing beside its uncertainty",
+               "a name that the expansions of all scales with this thermometer or reference have");
+  }
+  if (!expansion.thermometer.empty() && !(expansion.thermometer_uncertainty > 0)) {
+    table.fail_quantity("thermometer_standard_uncertainty", Quantity::temperature_difference,
+                        "is missing or zero beside the thermometer",
+                        "the standard uncertainty that all temperatures of this thermometer share");
+  }
   return expansion;
 }
 
