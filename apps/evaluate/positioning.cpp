@@ -1,6 +1,3 @@
-#include <cstddef>
-#include <vector>
-
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "options.h"
@@ -10,22 +7,17 @@ namespace {
 
 struct PositioningCommand {
   EvaluationOptions options;
-  ExpansionNumbers expansion;
+  PositioningTest stated;  ///< contributions in the units of their options
   std::string temperatures;
-  /// Those of positioning_contributions() in the units of their options.
-  std::vector<double> contributions = std::vector<double>(positioning_contributions().size());
 };
 
 /// The same test with the readings of a file.
 PositioningTest positioning_test(const PositioningCommand& command, const std::string& file) {
-  PositioningTest test;
+  PositioningTest test = command.stated;
   test.readings = read_positioning(file, command.options.columns.mapping());
-  test.expansion = command.expansion;
   if (!command.temperatures.empty()) test.temperatures = read_temperature_record(command.temperatures);
-  for (std::size_t i = 0; i < command.contributions.size(); ++i) {
-    const PositioningContribution& contribution = positioning_contributions()[i];
-    (test.*contribution.axis).*contribution.value = command.contributions[i] * contribution.unit;
-  }
+  for (const auto& contribution : positioning_contributions())
+    (test.*contribution.axis).*contribution.value *= contribution.unit;
   return test;
 }
 
@@ -56,13 +48,11 @@ void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line) {
       "report.pdf",
       command->options);
   add_customer_report_options(*app, command->options);
-  for (std::size_t i = 0; i < command->contributions.size(); ++i) {
-    const PositioningContribution& contribution = positioning_contributions()[i];
-    app->add_option(contribution.option, command->contributions[i], contribution.words)
+  for (const auto& [option, axis, value, unit, words] : positioning_contributions())
+    app->add_option(option, (command->stated.*axis).*value, words)
         ->check(in_range(0.0, 1e6))
         ->group("Measurement uncertainty");
-  }
-  add_expansion(*app, positioning_expansion_numbers(), command->expansion);
+  add_expansion(*app, positioning_expansion_numbers(), command->stated.expansion);
   app->add_input_file("--temperatures", command->temperatures, "CSV of machine_degC, instrument_degC over time_min")
       ->group("Correction to 20 degC");
   app->callback([&line, command] { line.run = [command] { return run(*command); }; });

@@ -88,32 +88,6 @@ std::vector<ScaleExpansion> read_expansions(TomlTable& root, const Machine& mach
   return expansions;
 }
 
-/// Covariance of errors that state their standard uncertainties, with what expansions share; 0 x 0: they share nothing.
-/// @param first  parameter with which the expansions begin
-Eigen::MatrixXd covariance_with_thermometers(const Machine& machine, const ErrorSet& errors,
-                                             const std::vector<ScaleExpansion>& expansions, std::size_t first) {
-  Eigen::MatrixXd covariance;
-  struct Shared {
-    const ScaleExpansion* expansion;
-    Eigen::Index parameter;
-  };
-  std::vector<Shared> before;
-  for (const ScaleExpansion& expansion : expansions) {
-    const std::vector<ErrorMotion> terms = expansion_terms(machine, expansion);
-    for (const ErrorMotion& term : terms) first += term.coefficients.size();
-    if (expansion.thermometer.empty()) continue;
-    const Shared one{&expansion, static_cast<Eigen::Index>(first) - 1};
-    for (const Shared& other : before) {
-      if (other.expansion->thermometer != expansion.thermometer) continue;
-      if (covariance.size() == 0) covariance = stated_variances(errors);
-      const double product = thermometer_effect(machine, expansion) * thermometer_effect(machine, *other.expansion);
-      covariance(one.parameter, other.parameter) = covariance(other.parameter, one.parameter) = product;
-    }
-    before.push_back(one);
-  }
-  return covariance;
-}
-
 /// What no error of an axis is, and from where on a computation need not have a result.
 constexpr double kLargestErrorAngle = 0.5 * std::numbers::pi, kLargestErrorLength = 1e5;
 
