@@ -79,7 +79,7 @@ std::string run_program(const ProgramRequest& request, const std::string& progra
 /// One move to a pose with a tool of that length.
 std::string move_with_tool(double tool_length) {
   return "G21 G90\nG43.1 Z" + std::to_string(tool_length) +
-         "\nG0 X0 Y0 Z-50 A0 C0\nG1 X60 Y-45 Z-80 A-25 C40 F600\nM2\n";
+         "\nG0 X0 Y0 Z-150 A0 C0\nG1 X60 Y-45 Z-180 A-25 C40 F600\nM2\n";
 }
 
 /// Where the actual tool is at the end of the program, from where it should be on the warm part.
@@ -87,7 +87,7 @@ double missed(const ErrorSet& errors, double tool_length, const std::string& cor
   Machine machine = trunnion();
   machine.tool_offset -= Eigen::Vector3d(0, 0, tool_length);
   const std::vector<double> commanded =
-      axes_of(machine, {{'X', 60}, {'Y', -45}, {'Z', -80}, {'A', -25}, {'C', 40}}, tool_length);
+      axes_of(machine, {{'X', 60}, {'Y', -45}, {'Z', -180}, {'A', -25}, {'C', 40}}, tool_length);
   const Eigen::Vector3d nominal = nominal_workpiece_from_tool(machine, commanded).translation;
   const Eigen::Vector3d wanted = kWarmPart.fixed_point + (1 + kStrain) * (nominal - kWarmPart.fixed_point);
   const std::vector<double> at = axes_of(machine, last_words(corrected), tool_length);

@@ -36,9 +36,8 @@ ScaleExpansion read_expansion_place(TomlTable& table, const Machine& machine) {
                "a name that the expansions of all scales with this thermometer or reference have");
   }
   if (!expansion.thermometer.empty() && !(expansion.thermometer_uncertainty > 0)) {
-    table.fail_quantity("thermometer_standard_uncertainty", Quantity::temperature_difference,
-                        "is missing or zero beside the thermometer",
-                        "the standard uncertainty that all temperatures of this thermometer share");
+    table.fail("thermometer_standard_uncertainty_K", "is missing or zero beside the thermometer",
+               "the standard uncertainty that all temperatures of this thermometer share");
   }
   return expansion;
 }
