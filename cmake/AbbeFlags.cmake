@@ -32,8 +32,10 @@ target_compile_options(abbe_common_flags INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
 # Tests see the internal headers too.
 target_include_directories(abbe_test_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
-# The code of tests is compiled for one run.
-target_compile_options(abbe_test_flags INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O1>)
+# The code of tests is compiled for one run. Where it computes little itself, it is not optimised: that takes a third to a
+# half of the time. Tests of geometry, which compute much, take more than twice as long so.
+set(abbe_of_test $<IF:$<BOOL:$<TARGET_PROPERTY:ABBE_COMPUTES_LITTLE>>,-O0,-O1>)
+target_compile_options(abbe_test_flags INTERFACE $<$<NOT:$<CONFIG:Debug>>:${abbe_of_test}>)
 # The same for all, so that all can share precompiled headers.
 target_compile_definitions(abbe_common_flags INTERFACE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
 if(ABBE_TESTS)

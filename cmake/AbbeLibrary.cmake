@@ -1,16 +1,16 @@
 # abbe_library(NAME SOURCES a.cpp ... DEPENDS geometry ... [LINK lib ...] [PRIVATE_LINK lib ...] [TESTS a_test.cpp ...]
-#   [ALONE b.cpp ...] [FAST pattern])
+#   [ALONE b.cpp ...] [FAST pattern] [TESTS_COMPUTE_LITTLE])
 #
 # One static library per folder of src/abbe. Its public headers are in include/abbe and are installed; those in src/abbe are
 # for the library itself and for tests. DEPENDS names other folders; TESTS are the unit tests that stand beside the
 # sources, built into one program per folder. ALONE are sources or tests that cannot share a unit, FAST
-# the sources that take the time of users (cmake/AbbeUnits.cmake).
+# the sources that take the time of users, TESTS_COMPUTE_LITTLE is for tests that need no optimisation (cmake/AbbeUnits.cmake).
 include(AbbeUnits)
 include(AbbeFlags)
 include(AbbeDiscover)
 
 function(abbe_library name)
-  cmake_parse_arguments(ARG "" "FAST" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK;ALONE" ${ARGN})
+  cmake_parse_arguments(ARG "TESTS_COMPUTE_LITTLE" "FAST" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK;ALONE" ${ARGN})
   if(ARG_SOURCES)
     add_library(abbe_${name} STATIC)
     abbe_units(abbe_${name} ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} FAST "${ARG_FAST}" PRECOMPILED abbe_precompiled)
@@ -49,7 +49,11 @@ function(abbe_library name)
 
   if(ABBE_TESTS AND ARG_TESTS)
     add_executable(${name}_test)
-    abbe_units(${name}_test ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_TESTS} ALONE ${ARG_ALONE} PRECOMPILED abbe_test_precompiled)
+    set(little "")
+    if(ARG_TESTS_COMPUTE_LITTLE)
+      set(little COMPUTES_LITTLE)
+    endif()
+    abbe_test_units(${name}_test ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_TESTS} ALONE ${ARG_ALONE} LIBRARIES ${seen} ${little})
     target_link_libraries(${name}_test PRIVATE abbe::${name} abbe_test_flags ${ARG_TEST_LINK} GTest::gtest_main GTest::gmock)
     abbe_discover_tests(${name}_test "${name}." unit 300)
   endif()

@@ -3,7 +3,8 @@
 # abbe_cross_test(NAME SOURCES a_test.cpp ... LINK abbe::identify ... [LABEL quick|long] [TIMEOUT seconds] [USES_COMMAND])
 #
 # Quick tests run on every build and under the sanitizers; long ones only in `make long`. USES_COMMAND: the test runs the
-# `abbe` command, which may start its companion programs, and is given its path as ABBE_COMMAND. Every test gets ABBE_SOURCE_DIR, to find examples/ and tests/golden/.
+# `abbe` command, which may start its companion programs, leaves the computing to it, and is given its path as ABBE_COMMAND.
+# Every test gets ABBE_SOURCE_DIR, to find examples/ and tests/golden/.
 function(abbe_cross_test name)
   cmake_parse_arguments(ARG "USES_COMMAND" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
   if(NOT ARG_LABEL)
@@ -13,7 +14,11 @@ function(abbe_cross_test name)
     set(ARG_TIMEOUT 300)
   endif()
   add_executable(${name})
-  abbe_units(${name} ${PROJECT_SOURCE_DIR}/tests SOURCES ${ARG_SOURCES} PRECOMPILED abbe_test_precompiled)
+  set(little "")
+  if(ARG_USES_COMMAND)
+    set(little COMPUTES_LITTLE)
+  endif()
+  abbe_test_units(${name} ${PROJECT_SOURCE_DIR}/tests SOURCES ${ARG_SOURCES} ${little})
   target_compile_features(${name} PRIVATE cxx_std_20)
   target_compile_definitions(${name} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${name} PRIVATE ${ARG_LINK} abbe_test_flags GTest::gtest_main GTest::gmock)

@@ -81,6 +81,31 @@ function(abbe_compile_fast source alone)
   set_property(SOURCE ${source} APPEND PROPERTY COMPILE_OPTIONS ${options})
 endfunction()
 
+# abbe_test_units(TARGET ROOT SOURCES a_test.cpp ... [ALONE b_test.cpp ...] [COMPUTES_LITTLE] [LIBRARIES study ...]): the
+# sources of a test program.
+#
+# COMPUTES_LITTLE: compiled without optimisation (AbbeFlags.cmake). Then LIBRARIES, the folders of src/abbe that the program
+# uses, are linked first and whole: of functions of templates that both have, the linker takes the first.
+function(abbe_test_units target root)
+  cmake_parse_arguments(ARG "COMPUTES_LITTLE" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
+  set(precompiled abbe_test_precompiled)
+  if(ARG_COMPUTES_LITTLE)
+    set(precompiled abbe_little_test_precompiled)
+    set_target_properties(${target} PROPERTIES ABBE_COMPUTES_LITTLE ON)
+    set(archives "")
+    foreach(library IN LISTS ARG_LIBRARIES)
+      get_target_property(type abbe_${library} TYPE)
+      if(type STREQUAL STATIC_LIBRARY)
+        list(APPEND archives $<TARGET_FILE:abbe_${library}>)
+      endif()
+    endforeach()
+    if(archives)
+      target_link_options(${target} PRIVATE LINKER:--whole-archive ${archives} LINKER:--no-whole-archive)
+    endif()
+  endif()
+  abbe_units(${target} ${root} SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} PRECOMPILED ${precompiled})
+endfunction()
+
 # abbe_precompiled(NAME HEADER FLAGS LINK ... [INDEPENDENT] [FAST]): a target from which others reuse precompiled headers.
 # FLAGS: abbe_flags or abbe_test_flags, as theirs. INDEPENDENT: for libraries, whose code does not depend on its position; the
 # compiler wants it equal. FAST: compiled with -O3.

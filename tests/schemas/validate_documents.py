@@ -31,6 +31,9 @@ date = "2026-11-28"
 EVALUATIONS = {
     "positioning": ["positioning", "evaluate/linear.csv", "--instrument-um-per-m", "0.6", "--tolerance", "A_um=20"],
     "rotary": ["positioning", "evaluate/rotary.csv"],
+    "temperature-variation": ["etve", "evaluate/etve.csv"],
+    "spindle-distortion": ["spindle-distortion", "evaluate/spindle.csv"],
+    "axis-distortion": ["axis-distortion", "evaluate/axis_warming.csv"],
     "diagonals": ["diagonals", "evaluate/diagonals.csv"],
     "circular": ["circular", "evaluate/circular.csv", "--radius-mm", "150", "--u-reading-um", "0.2"],
     "rotation": ["rotation", "evaluate/rotation.csv"],
@@ -50,9 +53,9 @@ def run(abbe, *words):
 
 
 def make_documents(abbe, examples, out):
-    """Every kind of certificate and of QIF results, in two languages. @returns two lists of files"""
+    """Every kind of certificate and of QIF results, in all languages. @returns two lists of files"""
     certificates, results = [], []
-    for language in ("en", "ja"):
+    for language in ("en", "de", "zh", "ja"):
         facts = out / f"facts-{language}.toml"
         facts.write_text(FACTS.format(language=language), encoding="utf-8")
         for name, (kind, readings, *options) in EVALUATIONS.items():

@@ -86,31 +86,71 @@ HWY_INLINE void walk_side(const WeighedSide& side, const Lane* position, std::si
   }
 }
 
+/// Rotation about the nominal line's direction of a side.
+HWY_INLINE Vector3 turned_about(const WeighedSide::Line& line, const SineCosine& angle, const Vector3& v) {
+  const Vector3 u = set3(line.direction);
+  const Vector along = hn::Mul(hn::Sub(set(1.0), angle.cosine), dot(u, v));
+  return plus_scaled(plus_scaled(scaled(v, angle.cosine), cross(u, v), angle.sine), u, along);
+}
+
+/// What an axis carries: mass times place, kg mm, where the axes within it are at zero; and the mass, kg.
+struct CarriedMoment {
+  Vector3 moment;
+  double mass;
+};
+
+HWY_INLINE void add_loads(const StateSource& state, std::size_t axis, CarriedMoment& carried) {
+  for (const CarriedLoads& loads : state.loads) {
+    if (loads.at != axis) continue;
+    carried.moment = carried.moment + set3(loads.moment);
+    carried.mass += loads.mass;
+  }
+}
+
+/// Torque about the line of a gravity state. The loads are carried inwards, from the outermost axis to the line, and
+/// meet the weight there: one vector is turned per axis, instead of a frame.
+HWY_INLINE Vector torque_about(const WeighedSide& side, const StateSource& state, const Lane* position, std::size_t k,
+                               const SineCosine* angle, const Vector3& weight) {
+  CarriedMoment carried{zero3(), 0};
+  for (std::size_t i = side.axes.size(); i-- > state.about + 1;) {
+    add_loads(state, i, carried);
+    const WeighedSide::Line& line = side.axes[i];
+    if (line.rotary) {
+      const Vector3 fixed = scaled(set3(line.point), set(carried.mass));
+      carried.moment = fixed + turned_about(line, angle[i], carried.moment - fixed);
+    } else {
+      const Vector way = hn::Mul(set(carried.mass * line.sense), load(position[line.axis].v + k));
+      carried.moment = plus_scaled(carried.moment, set3(line.direction), way);
+    }
+  }
+  add_loads(state, state.about, carried);
+  const WeighedSide::Line& line = side.axes[state.about];
+  const Vector3 u = set3(line.direction), across = cross(weight, u);
+  const Vector3 arm = plus_scaled(carried.moment, set3(line.point), set(-carried.mass));
+  if (!line.rotary) return dot(across, arm);
+  return hn::MulAdd(angle[state.about].sine, dot(across, cross(u, arm)),
+                    hn::Mul(angle[state.about].cosine, dot(across, arm)));
+}
+
 /// Torques of all gravity states of one side.
 inline HWY_NOINLINE void evaluate_torques(const CompiledChain& chain, std::size_t side_index, std::size_t end,
                                           StateLanes& lanes) {
   const WeighedSide& side = chain.sides[side_index];
-  const Vector3 weight = set3(chain.weight);
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
-    SideAtPose lines;
-    Vector3 moment[kMaxStates];
-    for (std::size_t s = 0; s < chain.states.size(); ++s) moment[s] = zero3();
-    walk_side(side, lanes.position, k, lines, [&](std::size_t i, const CarriedFrame& frame) HWY_ATTR {
-      for (std::size_t s = 0; s < chain.states.size(); ++s) {
-        const StateSource& state = chain.states[s];
-        if (state.kind != StateKind::gravity || state.side != side_index) continue;
-        for (const CarriedLoads& loads : state.loads) {
-          if (loads.at != i) continue;
-          // Of the arm: the mass at the line counts too.
-          const Vector3 arm = frame.origin - lines.point[state.about];
-          moment[s] = plus_scaled(moment[s] + frame.turned(loads.moment), arm, set(loads.mass));
-        }
-      }
-    });
+    SineCosine angle[kMaxAxes];
+    Vector3 weight[kMaxAxes];  // as what the axes within turn sees it
+    Vector3 seen = set3(chain.weight);
+    for (std::size_t i = 0; i < side.axes.size(); ++i) {
+      const WeighedSide::Line& line = side.axes[i];
+      weight[i] = seen;
+      if (!line.rotary) continue;
+      angle[i] = sine_cosine(hn::Mul(set(line.sense), load(lanes.position[line.axis].v + k)));
+      if (i + 1 < side.axes.size()) seen = turned_about(line, {hn::Neg(angle[i].sine), angle[i].cosine}, seen);
+    }
     for (std::size_t s = 0; s < chain.states.size(); ++s) {
       const StateSource& state = chain.states[s];
       if (state.kind != StateKind::gravity || state.side != side_index) continue;
-      store(dot(lines.direction[state.about], cross(moment[s], weight)), lanes.factor[s].v + k);
+      store(torque_about(side, state, lanes.position, k, angle, weight[state.about]), lanes.factor[s].v + k);
     }
   }
 }

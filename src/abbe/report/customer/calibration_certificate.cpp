@@ -193,11 +193,12 @@ class CertificateWriter {
     english("dcc:description", {"Standard uncertainty multiplied by the coverage factor that stands beside it."});
     xml_.element("dcc:norm", "JCGM 100:2008");
     xml_.close();
-    const std::string& standard = facts_.standard.empty() ? report_.standard : facts_.standard;
+    const std::string stated = trimmed(facts_.standard);
+    const std::string standard = stated.empty() ? trimmed(report_.standard) : stated;
     if (!standard.empty()) {
       xml_.open("dcc:usedMethod");
       text("dcc:name", report_.subject);
-      xml_.element("dcc:norm", trimmed(standard));
+      xml_.element("dcc:norm", standard);
       xml_.close();
     }
     xml_.close();
@@ -209,13 +210,13 @@ class CertificateWriter {
     for (const ReportInstrument& instrument : facts_.instruments) {
       xml_.open("dcc:measuringEquipment", {{"refType", "basic_normalUsed"}});
       text("dcc:name", instrument.name);
-      if (!instrument.serial_number.empty() || !instrument.certificate.empty()) {
+      const std::string serial_number = trimmed(instrument.serial_number);
+      const std::string certificate = trimmed(instrument.certificate);
+      if (!serial_number.empty() || !certificate.empty()) {
         xml_.open("dcc:identifications");
-        if (!instrument.serial_number.empty()) {
-          write_identification("manufacturer", instrument.serial_number, "Serial number");
-        }
-        if (!instrument.certificate.empty()) {
-          write_identification("calibrationLaboratory", instrument.certificate, "Calibration certificate");
+        if (!serial_number.empty()) write_identification("manufacturer", serial_number, "Serial number");
+        if (!certificate.empty()) {
+          write_identification("calibrationLaboratory", certificate, "Calibration certificate");
         }
         xml_.close();
       }

@@ -154,6 +154,16 @@ TEST(CalibrationCertificate, ErrorsHaveTheirCovarianceAndTheFactorOfTheirRank) {
   EXPECT_EQ(all_elements(root, "realListXMLList").size(), 1U);
 }
 
+TEST(CalibrationCertificate, LeavesOutWhatIsOnlyBlanks) {
+  CustomerReport report = a_report();
+  report.facts.standard = " ";
+  report.facts.instruments[0].serial_number = " ";
+  report.facts.instruments[0].certificate = " ";
+  const XmlElement root = parsed_document(calibration_certificate(report));
+  EXPECT_EQ(all_elements(root, "norm")[1]->text, "ISO 230-2:2014");
+  EXPECT_THAT(child_names(*all_elements(root, "measuringEquipment")[0]), ElementsAre("name"));
+}
+
 TEST(CalibrationCertificate, NamesTheFactsThatItNeeds) {
   EXPECT_TRUE(missing_for_certificate(complete_facts()).empty());
   ReportFacts facts = complete_facts();
