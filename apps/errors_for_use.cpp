@@ -41,6 +41,13 @@ void add_states(Subcommand& command, std::vector<std::string>& states) {
       ->allow_extra_args(false);
 }
 
+void add_workpiece(Subcommand& command, WorkpieceOptions& workpiece) {
+  for (const auto& one : workpiece_numbers()) command.add_option(one.option, workpiece.*one.value, one.words);
+  command.add_option("--workpiece-state", workpiece.state, "State of the machine file that is its temperature, degC");
+  const char* const fixed = "Point of the workpiece that stays where it is, mm, workpiece frame (default 0 0 0)";
+  command.add_option("--workpiece-fixed-mm", workpiece.fixed_mm, fixed)->expected(3);
+}
+
 void add_accept_misfit(Subcommand& command, bool& accept_misfit) {
   command.add_flag("--accept-misfit", accept_misfit, "Use errors that are marked as not to be trusted");
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/workpiece_option.h"
 
 namespace abbe {
 
@@ -32,6 +33,9 @@ void tell_distrusted(const std::filesystem::path& path, const ErrorsFile& conten
 
 /// The option --state of commands that use errors at given values of states.
 void add_states(Subcommand& command, std::vector<std::string>& states);
+
+/// The options --workpiece-... of commands that make or map a workpiece at another temperature than 20 degC.
+void add_workpiece(Subcommand& command, WorkpieceOptions& workpiece);
 
 /// The option --accept-misfit of commands that use errors.
 void add_accept_misfit(Subcommand& command, bool& accept_misfit);

@@ -26,6 +26,7 @@ namespace {
 struct MapOptions {
   std::string machine, errors, reference, poses;
   std::vector<std::string> grid, outputs, states;
+  WorkpieceOptions workpiece;
   bool fit_datum = false, keep_datum = false, accept_uncovered = false, json = false;
 };
 
@@ -35,6 +36,7 @@ ErrorsMapRequest request_of_map(const MapOptions& options) {
   request.errors = read_errors_and_tell(options.errors, request.machine, options.states);
   if (!options.reference.empty())
     request.minus = read_errors_and_tell(options.reference, request.machine, options.states);
+  request.workpiece = workpiece_option(request.machine, options.workpiece, options.states);
   request.fit_datum = !options.keep_datum;
   if (!options.poses.empty()) {
     request.poses.emplace();
@@ -81,6 +83,7 @@ void add_map_command(CommandLine& line) {
   command->add_input_file("--minus", options->reference,
                           "Errors that are corrected (*.errors.toml): adds the error that remains");
   add_states(*command, options->states);
+  add_workpiece(*command, options->workpiece);
   command->add_option("--grid", options->grid, "AXIS_unit=from:to:count or AXIS_unit=position; repeat per axis");
   command
       ->add_input_file("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid")

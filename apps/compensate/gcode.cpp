@@ -39,6 +39,7 @@ int run_gcode(const GcodeOptions& options) {
   request.errors = errors.errors;
   request.at_state = errors.at_state;
   request.covariance = errors.covariance;
+  request.workpiece = workpiece_option(machine, options.workpiece, options.states);
   request.program_file = options.program;
   request.errors_file = options.errors;
   request.words = program_word_axes(machine, options.words, options.machine);
@@ -89,7 +90,10 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
       "Example:\n"
       "  abbe compensate gcode examples/compensate/cone.ngc --machine "
       "examples/machines/trunnion-mill.machine.toml --errors examples/compensate/trunnion.errors.toml -o "
-      "corrected.ngc\n\n"
+      "corrected.ngc\n"
+      "  abbe compensate gcode examples/compensate/cone.ngc --machine examples/machines/trunnion-mill.machine.toml "
+      "--errors examples/compensate/trunnion.errors.toml --workpiece-expansion-um-per-m-K 23.4 "
+      "--workpiece-temperature-degC 26 --u-workpiece-temperature-K 0.5 -o warm.ngc\n\n"
       "X, Y and Z are axis positions unless G43.4 or --tool-centre says otherwise. The tool is that of the machine\n"
       "file, lengthened by the tool length offset in force. An axis with a reversal value takes up its play by a\n"
       "motion of its own wherever it reverses. Leave the control's own backlash compensation as it was when the "
@@ -147,6 +151,7 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
                       "Give up on a program that takes longer (default: 5, plus 1 for every 10 MB of the program)");
   command->add_flag("--dry-run", options->dry_run,
                     "Report only: the largest corrections and where they are; write nothing");
+  add_workpiece(*command, options->workpiece);
   add_states(*command, options->states);
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");

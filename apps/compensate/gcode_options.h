@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "abbe/compensate/program/program_correction.h"
+#include "abbe/formats/machine/workpiece_option.h"
 #include "abbe/formats/nc/nc_program.h"
 #include "abbe/machine/machine.h"
 #include "abbe/report/words/program_words.h"
@@ -23,6 +24,7 @@ struct GcodeOptions {
   std::string tool_table, parameters;
   int tool = -1, decimals = 6;
   std::optional<double> max_output_mb, max_minutes;
+  WorkpieceOptions workpiece;
   bool tool_table_in_inches = false, parameters_in_inches = false;
   bool accept_misfit = false, tool_centre = false, inches = false, block_delete = false, dry_run = false, json = false;
 };

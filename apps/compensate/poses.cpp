@@ -132,18 +132,7 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   command->add_option("--limit-um", options->limit_um, "Refuse corrections of the functional point above this, um");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
                       "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
-  WorkpieceOptions& workpiece = options->workpiece;
-  command->add_option(
-      "--workpiece-expansion-um-per-m-K", workpiece.expansion,
-      "Expansion coefficient of a workpiece that has to be right at 20 degC and has another temperature");
-  command->add_option("--u-workpiece-expansion-um-per-m-K", workpiece.u_expansion,
-                      "Standard uncertainty of that coefficient");
-  command->add_option("--workpiece-state", workpiece.state, "State of the machine file that is its temperature, degC");
-  command->add_option("--u-workpiece-temperature-K", workpiece.u_kelvin, "Standard uncertainty of that temperature, K");
-  command
-      ->add_option("--workpiece-fixed-mm", workpiece.fixed_mm,
-                   "Point that stays where it is, mm, workpiece frame (default 0 0 0)")
-      ->expected(3);
+  add_workpiece(*command, options->workpiece);
   command->add_flag("--dry-run", options->dry_run,
                     "Report only: the largest corrections and where they are; write nothing");
   add_states(*command, options->states);

@@ -34,6 +34,7 @@ struct TableCommand {
   std::string machine, errors, format, output, map, over;
   std::vector<std::string> at, axes, names, reference_position, states;
   std::optional<double> interpolation_um, limit_um, limit_urad;
+  WorkpieceOptions workpiece;
   double interpolation_urad = 0.1, times_uncertainty = 0, least_reduction_percent = 1;
   std::optional<std::size_t> max_points, positions;
   std::size_t first_table = 0, encoder = 0;
@@ -111,6 +112,7 @@ int run_table(const TableCommand& command) {
     request.over_file = command.over;
     request.over = read_errors_over_time(command.errors, request.machine, command.states, command.over);
   }
+  request.workpiece = workpiece_option(request.machine, command.workpiece, command.states);
   check_outputs(command);
   if (command.limit_um) request.limit_mm = 1e-3 * *command.limit_um;
   if (command.limit_urad) request.limit_rad = 1e-6 * *command.limit_urad;
@@ -210,6 +212,7 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_output_file(
       "--map", options->map,
       "Map to write of the displacement without tables, with tables and ideal: .csv, .vts or .vtu");
+  add_workpiece(*command, options->workpiece);
   add_states(*command, options->states);
   command->add_input_file("--state-over", options->over,
                           "Also state what the tables leave at the states of a record (CSV: time_s and states)");

@@ -34,17 +34,19 @@ int run(const CircularCommand& command) {
 
 void add_evaluate_circular(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<CircularCommand>();
-  Subcommand* app =
-      add_evaluation(evaluate, "circular",
-                     "Circular test (ISO 230-4) with a ball bar or grid encoder, and the causes of the deviations",
-                     "  direction   cw or ccw\n"
-                     "  angle_deg   with deviation_um (from the nominal radius) or radius_mm: ball bar\n"
-                     "  X_mm, Y_mm  or Y_mm, Z_mm or Z_mm, X_mm, from the centre of the nominal circle: grid encoder",
-                     "deviation_um=radial",
-                     "  abbe evaluate circular examples/evaluate/circular.csv --radius-mm 150 --u-reading-um 0.2 "
-                     "--skip-reversal-deg 6 "
-                     "--output results/circular --tolerance G_b_um=15",
-                     command->options);
+  Subcommand* app = add_evaluation(
+      evaluate, "circular",
+      "Circular test (ISO 230-4) with a ball bar or grid encoder, and the causes of the deviations",
+      "  direction   cw or ccw\n"
+      "  angle_deg   with deviation_um (from the nominal radius) or radius_mm: ball bar\n"
+      "  X_mm, Y_mm  or Y_mm, Z_mm or Z_mm, X_mm, from the centre of the nominal circle: grid encoder",
+      "deviation_um=radial",
+      "  abbe evaluate circular examples/evaluate/circular.csv --radius-mm 150 --u-reading-um 0.2 "
+      "--skip-reversal-deg 6 "
+      "--output results/circular --tolerance G_b_um=15\n"
+      "  abbe evaluate circular examples/evaluate/circular.csv --radius-mm 150 --machine-temperature-degC "
+      "23 --machine-expansion-um-per-m-K 10 --u-machine-temperature-K 0.3",
+      command->options);
   add_customer_report_options(*app, command->options);
   add_number(app, "--radius-mm", Quantity::length, "mm", {0.001, 1e6}, command->test.nominal_radius, "Nominal radius")
       ->required();
@@ -63,6 +65,7 @@ void add_evaluate_circular(Subcommand& evaluate, CommandLine& line) {
              "Readings nearer than this to a reversal of an axis are left out of the fit of causes (default 0)");
   add_number(app, "--feed-mm-min", Quantity::length, "mm", {0.001, 1e6}, command->feed_mm,
              "Feed along the path: also gives the servo mismatch as a time constant");
+  add_expansion(*app, circular_expansion_numbers(), command->test.expansion);
   app->callback([&line, command] { line.run = [command] { return run(*command); }; });
 }
 

@@ -70,6 +70,11 @@ void add_customer_report_options(Subcommand& command, EvaluationOptions& options
       ->group("Customer report");
 }
 
+void add_expansion(Subcommand& command, std::span<const TestNumber<ExpansionNumbers>> list, ExpansionNumbers& numbers) {
+  for (const auto& [option, value, unit, from, to, words] : list)
+    command.add_option(option, numbers.*value, words)->check(in_range(from, to))->group("Correction to 20 degC");
+}
+
 namespace {
 
 /// Before anything is computed. @throws InputError

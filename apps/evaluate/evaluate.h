@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,9 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
 
 /// Options of a customer report.
 void add_customer_report_options(Subcommand& command, EvaluationOptions& options);
+
+/// Options of a correction to 20 degC.
+void add_expansion(Subcommand& command, std::span<const TestNumber<ExpansionNumbers>> list, ExpansionNumbers& numbers);
 
 /// Prints the report for people or programs and writes the results folder: evaluation.json, one SVG file per plot,
 /// report.html. @returns kNegative if a tolerance is exceeded or a figure with one could not be evaluated, else kDone

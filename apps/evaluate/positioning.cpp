@@ -1,6 +1,3 @@
-#include <cstddef>
-#include <vector>
-
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "options.h"
@@ -10,18 +7,17 @@ namespace {
 
 struct PositioningCommand {
   EvaluationOptions options;
-  /// Those of positioning_contributions() in the units of their options.
-  std::vector<double> contributions = std::vector<double>(positioning_contributions().size());
+  PositioningTest stated;  ///< contributions in the units of their options
+  std::string temperatures;
 };
 
 /// The same test with the readings of a file.
 PositioningTest positioning_test(const PositioningCommand& command, const std::string& file) {
-  PositioningTest test;
+  PositioningTest test = command.stated;
   test.readings = read_positioning(file, command.options.columns.mapping());
-  for (std::size_t i = 0; i < command.contributions.size(); ++i) {
-    const PositioningContribution& contribution = positioning_contributions()[i];
-    (test.*contribution.axis).*contribution.value = command.contributions[i] * contribution.unit;
-  }
+  if (!command.temperatures.empty()) test.temperatures = read_temperature_record(command.temperatures);
+  for (const auto& contribution : positioning_contributions())
+    (test.*contribution.axis).*contribution.value *= contribution.unit;
   return test;
 }
 
@@ -38,23 +34,27 @@ void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line) {
       "  direction       + or -: from which side the target was approached\n"
       "  target_mm       target position; target_deg for a rotary axis\n"
       "  deviation_um    actual minus target; or actual_mm. deviation_arcsec or actual_deg for a rotary axis\n"
-      "  run             optional: number or name of the run",
+      "  run             optional: number or name of the run\n"
+      "  machine_degC, instrument_degC, time_min  optional: temperatures for a correction to 20 degC, and when",
       "deviation_um=error",
       "  abbe evaluate positioning examples/evaluate/linear.csv\n"
       "  abbe evaluate positioning examples/evaluate/rotary.csv --tolerance A_arcsec=20 -o results/c\n"
       "  abbe evaluate positioning examples/evaluate/linear.csv --instrument-um-per-m 0.6 --misalignment-mm 1 "
       "--environment-um 1.2\n"
+      "  abbe evaluate positioning examples/evaluate/linear.csv --machine-temperature-degC 23.5 "
+      "--machine-expansion-um-per-m-K 11.5 --u-machine-temperature-K 0.3 --u-machine-expansion-um-per-m-K 1\n"
       "  abbe evaluate positioning examples/customer_report/after.csv --before examples/customer_report/before.csv "
       "--instrument-um-per-m 0.4 --environment-um 0.3 --facts examples/customer_report/facts.toml --customer-report "
       "report.pdf",
       command->options);
   add_customer_report_options(*app, command->options);
-  for (std::size_t i = 0; i < command->contributions.size(); ++i) {
-    const PositioningContribution& contribution = positioning_contributions()[i];
-    app->add_option(contribution.option, command->contributions[i], contribution.words)
+  for (const auto& [option, axis, value, unit, words] : positioning_contributions())
+    app->add_option(option, (command->stated.*axis).*value, words)
         ->check(in_range(0.0, 1e6))
         ->group("Measurement uncertainty");
-  }
+  add_expansion(*app, positioning_expansion_numbers(), command->stated.expansion);
+  app->add_input_file("--temperatures", command->temperatures, "CSV of machine_degC, instrument_degC over time_min")
+      ->group("Correction to 20 degC");
   app->callback([&line, command] { line.run = [command] { return run(*command); }; });
 }
 

@@ -17,19 +17,18 @@ void add_test(Subcommand& evaluate, CommandLine& line, const std::string& kind, 
               const std::string& columns, const std::string& example, std::span<const TestNumber<Test>> numbers,
               const Read& read) {
   auto options = std::make_shared<EvaluationOptions>();
-  auto values = std::make_shared<std::vector<double>>();
+  auto stated = std::make_shared<Test>();
   Subcommand* app = add_evaluation(evaluate, kind, description, columns, "Z_um=probe",
                                    "  abbe evaluate " + kind + " examples/evaluate/" + example, *options);
   add_customer_report_options(*app, *options);
-  for (const auto& number : numbers) values->push_back(Test().*number.value);
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    app->add_option(numbers[i].option, (*values)[i], numbers[i].words)->check(in_range(numbers[i].from, numbers[i].to));
-  }
-  app->callback([&line, options, values, numbers, read] {
-    line.run = [options, values, numbers, read] {
+  for (const auto& one : numbers)
+    app->add_option(one.option, (*stated).*one.value, one.words)->check(in_range(one.from, one.to));
+  app->callback([&line, options, stated, numbers, read] {
+    line.run = [options, stated, numbers, read] {
       return run_evaluation(*options, [&](const std::string& file) {
-        Test test{read(file, options->columns.mapping())};
-        for (std::size_t i = 0; i < numbers.size(); ++i) test.*numbers[i].value = (*values)[i] * numbers[i].unit;
+        Test test = *stated;
+        test.readings = read(file, options->columns.mapping());
+        for (const auto& one : numbers) test.*one.value *= one.unit;
         return test;
       });
     };

@@ -24,6 +24,18 @@ KINDS = {
                         "instrument_um_per_m": 0.6, "misalignment_mm": 1, "environment_um": 1.2}, **more)),
     "rotary": (["positioning", "--instrument-arcsec", 0.3], EVALUATE / "rotary.csv",
                lambda r, **more: abbe.evaluate_positioning(r, uncertainty={"instrument_arcsec": 0.3}, **more)),
+    "linear, at 20 degC": (
+        ["positioning", "--machine-temperature-degC", 23.5, "--machine-expansion-um-per-m-K", 11.5,
+         "--u-machine-temperature-K", 0.3, "--u-common-temperature-K", 0.1], EVALUATE / "linear.csv",
+        lambda r, **more: abbe.evaluate_positioning(
+            r, uncertainty={"machine_expansion_um_per_m_K": 11.5},
+            expansion={"machine_temperature_degC": 23.5, "u_machine_temperature_K": 0.3,
+                       "u_common_temperature_K": 0.1}, **more)),
+    "circular, at 20 degC": (
+        ["circular", "--radius-mm", 150, "--machine-temperature-degC", 23, "--machine-expansion-um-per-m-K", 10],
+        EVALUATE / "circular.csv",
+        lambda r, **more: abbe.evaluate_circular(
+            r, 150, expansion={"machine_temperature_degC": 23, "machine_expansion_um_per_m_K": 10}, **more)),
     "diagonals": (["diagonals"], EVALUATE / "diagonals.csv", abbe.evaluate_diagonals),
     "circular": (["circular", "--radius-mm", 150, "--u-reading-um", 0.2, "--u-length-um", 0.5, "--skip-reversal-deg", 6,
                   "--feed-mm-min", 1000, "--plane", "YZ", "--centre", "minimum-zone"], EVALUATE / "circular.csv",

@@ -26,6 +26,10 @@ TEST_F(CustomerNotesCommand, NoNoteOfAnEvaluationIsLeftInEnglish) {
   const std::string laser = examples + "laser_engraver/", yin = examples + "machines/yin-engraver-u.machine.toml";
   const std::vector<std::vector<std::string>> tests = {
       {"positioning", evaluate + "linear.csv"},
+      {"positioning", evaluate + "linear.csv", "--machine-temperature-degC", "23", "--machine-expansion-um-per-m-K",
+       "11"},
+      {"circular", evaluate + "circular.csv", "--radius-mm", "150", "--machine-temperature-degC", "23",
+       "--machine-expansion-um-per-m-K", "11"},
       {"diagonals", evaluate + "diagonals.csv"},
       {"circular", evaluate + "circular.csv", "--radius-mm", "150"},
       {"rotation", evaluate + "rotation.csv"},

@@ -56,9 +56,11 @@ TEST_F(ReadableTables, EvaluationsAreTheSame) {
     std::string test, file;
     std::vector<std::string> options;
   };
-  for (const Case& one : {Case{"positioning", "linear.csv", {}}, Case{"positioning", "rotary.csv", {}},
-                          Case{"diagonals", "diagonals.csv", {}}, Case{"straightness", "straightness.csv", {}},
-                          Case{"squareness", "squareness.csv", {}}, Case{"rotation", "rotation.csv", {}}}) {
+  for (const Case& one :
+       {Case{"positioning", "linear.csv", {}}, Case{"positioning", "rotary.csv", {}},
+        Case{"diagonals", "diagonals.csv", {}}, Case{"straightness", "straightness.csv", {}},
+        Case{"squareness", "squareness.csv", {}}, Case{"rotation", "rotation.csv", {}}, Case{"etve", "etve.csv", {}},
+        Case{"spindle-distortion", "spindle.csv", {}}, Case{"axis-distortion", "axis_warming.csv", {}}}) {
     const std::string csv = example("evaluate/" + one.file);
     const auto evaluated = [&](const std::string& file) { return figures({"evaluate", one.test, file}); };
     const nlohmann::json expected = evaluated(kExamples + "evaluate/" + one.file);

@@ -47,6 +47,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/compensate/workpiece_expansion.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"
 #include "abbe/formats/machine/errors_file.h"
@@ -77,6 +78,10 @@ struct ControlTableRequest {
   std::string errors_file;  ///< name for messages; may be empty
   /// [p, p] of errors.parameters(), mm and rad; 0 x 0: what the errors state of their standard uncertainties.
   Eigen::MatrixXd covariance;
+
+  /// --workpiece-...: one that is to be right at 20 degC and has the temperature stated here. The tool is the machine
+  /// file's.
+  std::optional<WorkpieceExpansion> workpiece{};
 
   /// --at: where an axis stands while another one moves; axes that are not named stand in the middle of their known
   /// travel.
@@ -160,7 +165,8 @@ struct ControlTables {
   /// Whether there are no tables that may be used.
   bool says_no() const { return format == nullptr || !refused.empty() || !too_few_nodes.empty(); }
 
-  double tolerance_mm = 0, tolerance_rad = 0;  ///< of straight lines between nodes, as they were asked for
+  std::optional<WorkpieceExpansion> workpiece{};  ///< for which the tables are made, besides the errors
+  double tolerance_mm = 0, tolerance_rad = 0;     ///< of straight lines between nodes, as they were asked for
   /// Predicted from the errors over the grid of all commands (docs/conventions.md).
   VolumetricFigures volumetric;
 

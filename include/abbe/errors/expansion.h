@@ -9,6 +9,9 @@
 
 namespace abbe {
 
+/// Reference temperature of lengths (ISO 1), degC.
+inline constexpr double kReferenceTemperature = 20;
+
 /// Thermal expansion of the scale (or the screw) of a linear axis.
 ///
 /// A scale that is warmer than the reference temperature is too long: at the command q the axis stands at q + alpha
@@ -20,7 +23,11 @@ struct ScaleExpansion {
   double coefficient = 0;              ///< alpha, 1/K
   double standard_uncertainty = 0;     ///< of the coefficient, 1/K; 0: not stated
   double temperature_uncertainty = 0;  ///< of the temperature that the state gives, standard, K; 0: not stated
-  double fixed_point = 0;              ///< q0, mm: command at which the scale is where it is at the reference
+  /// Expansions of the same thermometer (or reference of several thermometers) share an error of their temperatures;
+  /// empty: none do. The standard uncertainty of that error, K, is no part of `temperature_uncertainty`.
+  std::string thermometer{};
+  double thermometer_uncertainty = 0;
+  double fixed_point = 0;  ///< q0, mm: command at which the scale is where it is at the reference
 };
 
 /// Why an axis, a state or a number cannot make an expansion, and what could; empty: it can.
@@ -47,8 +54,14 @@ double expansion_scale(const Machine& machine, const ErrorMotion& term);
 
 /// Error motions of an expansion: one with the state. If the uncertainty of its temperature is stated, also one without
 /// a state, whose value is zero and whose uncertainty is what that of the temperature makes: with both, the variance of
-/// alpha (T - T0) is u^2(alpha) (T - T0)^2 + (alpha^2 + u^2(alpha)) u^2(T), exact for independent alpha and T.
+/// alpha (T - T0) is u^2(alpha) (T - T0)^2 + (alpha^2 + u^2(alpha)) u^2(T), exact for independent alpha and T. The part
+/// of the thermometer is in u(T).
 std::vector<ErrorMotion> expansion_terms(const Machine& machine, const ScaleExpansion& expansion);
+
+/// What one standard uncertainty of the thermometer changes the coefficient of s of the term without a state by, mm,
+/// with a sign: scale alpha u. Terms of the same thermometer have the product of both as their covariance, which is
+/// exact for independent coefficients.
+double thermometer_effect(const Machine& machine, const ScaleExpansion& expansion);
 
 /// Back from an error motion with a state to the expansion that it is; nothing if it is none.
 std::optional<ScaleExpansion> expansion_of(const Machine& machine, const ErrorMotion& term);

@@ -10,6 +10,7 @@
 
 #include "abbe/compensate/program/program_correction.h"
 #include "abbe/compensate/program/word_axes.h"
+#include "abbe/compensate/workpiece_expansion.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/nc/nc_program.h"
@@ -27,7 +28,9 @@ struct ProgramRequest {
   ErrorSet errors;
   /// [p, p] of errors.parameters(), or 0 x 0: what the errors state of their standard uncertainties.
   Eigen::MatrixXd covariance;
-  StateValues at_state{};                 ///< at which the errors are taken, for the report
+  StateValues at_state{};  ///< at which the errors are taken, for the report
+  /// One that is to be right at 20 degC and has the temperature stated here: the program makes it so.
+  std::optional<WorkpieceExpansion> workpiece{};
   std::string program_file, errors_file;  ///< names for messages
 
   WordAxes words;                       ///< axes of the program's words

@@ -29,6 +29,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/compensate/workpiece_expansion.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/map_file.h"
 #include "abbe/machine/machine.h"
@@ -46,7 +47,10 @@ namespace abbe {
 struct ErrorsMapRequest {
   Machine machine;
   ErrorsFile errors;
-  std::optional<ErrorsFile> minus;   ///< --minus: errors that are corrected for
+  std::optional<ErrorsFile> minus;  ///< --minus: errors that are corrected for
+  /// --workpiece-...: one that is to be right at 20 degC and has the temperature stated here: its expansion is among
+  /// the errors, and nothing of --minus corrects it.
+  std::optional<WorkpieceExpansion> workpiece{};
   std::optional<StatedPoses> poses;  ///< --poses: instead of a grid
   /// --grid: [axes], or empty; what is not set runs over the range in which all errors are known.
   std::vector<std::optional<AxisRange>> grid;
@@ -62,6 +66,7 @@ struct ErrorsMap {
   bool after_is_true = false;                ///< the errors are the truth of a simulation
   std::optional<VolumetricFigures> figures;  ///< with the datum fitted only: without, they are other quantities
   PartialErrors partial;                     ///< what the errors do not state
+  std::optional<WorkpieceExpansion> workpiece{};
 
   LeftOutPoses left_out() const {
     return {.all = stated.poses.count(),

@@ -18,14 +18,35 @@ void enter_uncertainty(const std::map<std::string, double>& given, PositioningTe
   }
 }
 
+/// Temperatures, coefficients and their uncertainties, in the units of the options.
+void enter_expansion(const std::map<std::string, double>& given, std::span<const TestNumber<ExpansionNumbers>> known,
+                     ExpansionNumbers& numbers) {
+  for (const auto& [name, value] : given) {
+    const TestNumber<ExpansionNumbers>& number = entry_named("expansion", name, known);
+    if (!(value >= number.from && value <= number.to)) {
+      throw InputError({.field = "expansion"}, fmt::format("{} is {}", name, value),
+                       fmt::format("a number from {:g} to {:g}", number.from, number.to));
+    }
+    numbers.*number.value = value;
+  }
+}
+
 Evaluation positioning(const ReadingsArgument& argument, const std::map<std::string, double>& uncertainty,
-                       const Tolerances& tolerances, const std::string& file) {
+                       const std::map<std::string, double>& expansion,
+                       const std::optional<ReadingsArgument>& temperatures, const Tolerances& tolerances,
+                       const std::string& file) {
   const GivenReadings given = given_readings(argument);
   PositioningTest test;
   test.readings = readings_of(
       given, [](const auto& path) { return read_positioning(path); },
       [](const NamedColumns& columns) { return parse_positioning(columns); });
   enter_uncertainty(uncertainty, test);
+  enter_expansion(expansion, positioning_expansion_numbers(), test.expansion);
+  if (temperatures) {
+    test.temperatures = readings_of(
+        given_readings(*temperatures, "temperatures"), [](const auto& path) { return read_temperature_record(path); },
+        [](const NamedColumns& columns) { return parse_temperature_record(columns); });
+  }
   return evaluate_test(std::move(test), name_of(given, file), tolerances);
 }
 
@@ -39,9 +60,11 @@ Evaluation diagonals(const ReadingsArgument& argument, const Tolerances& toleran
 
 Evaluation circular(const ReadingsArgument& argument, double radius_mm, const std::optional<std::string>& plane,
                     const std::string& centre, double u_reading_um, double u_length_um, bool length_calibrated,
-                    double skip_reversal_deg, std::optional<double> feed_mm_min, const Tolerances& tolerances,
+                    double skip_reversal_deg, std::optional<double> feed_mm_min,
+                    const std::map<std::string, double>& expansion, const Tolerances& tolerances,
                     const std::string& file) {
   CircularTest test;
+  enter_expansion(expansion, circular_expansion_numbers(), test.expansion);
   test.nominal_radius = quantity("radius_mm", radius_mm, Quantity::length, "mm", 0.001, 1e6);
   test.plane = plane.value_or("");
   test.centre = word_value<CircularCentre>("centre", centre,
@@ -114,13 +137,16 @@ Evaluation of_two_lines(const ReadingsArgument& argument, const std::string& ref
 void bind_axis_tests(nb::module_& module) {
   module.def(
       "evaluate_positioning", &positioning, nb::arg("readings"), nb::kw_only(),
-      nb::arg("uncertainty") = std::map<std::string, double>{}, nb::arg("tolerances") = Tolerances{},
-      nb::arg("file") = "",
+      nb::arg("uncertainty") = std::map<std::string, double>{}, nb::arg("expansion") = std::map<std::string, double>{},
+      nb::arg("temperatures") = nb::none(), nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Accuracy and repeatability of positioning of a linear or rotary axis (ISO 230-2), as an Evaluation.\n\n"
       "readings: a file, or columns [n] named as in one, of any unit: direction ('+', '-': from which side the target\n"
       "was approached), target_mm or target_deg, deviation_um (actual minus target) or actual_mm, or deviation_arcsec\n"
       "or actual_deg, and optionally run. uncertainty: contributions, named like the options of the command:\n"
       "{'instrument_um_per_m': 0.6, 'misalignment_mm': 1}; instruments and set-up expanded (k = 2).\n"
+      "expansion: correction to 20 degC, named likewise: {'machine_temperature_degC': 23.5,\n"
+      "'u_machine_temperature_K': 0.3}, with the coefficients in uncertainty; temperatures may also be columns\n"
+      "(machine_degC, instrument_degC) of the readings, or of temperatures over time_min.\n"
       "tolerances: {'A_um': 10}. file: name for the title. numbers is a PositioningNumbers.\n"
       "Raises InputError naming the column and the row. Definitions: docs/evaluate.md.\n\n"
       ">>> import abbe\n"
@@ -143,7 +169,8 @@ void bind_axis_tests(nb::module_& module) {
       "evaluate_circular", &circular, nb::arg("readings"), nb::arg("radius_mm"), nb::kw_only(),
       nb::arg("plane") = nb::none(), nb::arg("centre") = "least-squares", nb::arg("u_reading_um") = 0.0,
       nb::arg("u_length_um") = 0.0, nb::arg("length_calibrated") = true, nb::arg("skip_reversal_deg") = 0.0,
-      nb::arg("feed_mm_min") = nb::none(), nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
+      nb::arg("feed_mm_min") = nb::none(), nb::arg("expansion") = std::map<std::string, double>{},
+      nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Circular test (ISO 230-4) with a ball bar or grid encoder, and the causes of the deviations.\n\n"
       "readings: a file, or columns [n]: direction ('cw', 'ccw') with angle_deg and deviation_um (from the nominal\n"
       "radius) or radius_mm of a ball bar, or with two of X_mm, Y_mm, Z_mm of a grid encoder, from the centre of the\n"
@@ -152,7 +179,9 @@ void bind_axis_tests(nb::module_& module) {
       "u_length_um: standard uncertainties of a reading, and of what all readings share. length_calibrated: if False, "
       "the\n"
       "length shows only the difference of the scales. skip_reversal_deg: readings this near a reversal are not used\n"
-      "to find the causes. feed_mm_min: along the path. numbers is a CircularNumbers. Raises InputError.\n"
+      "to find the causes. feed_mm_min: along the path. expansion: correction to 20 degC, named like the options of\n"
+      "the command: {'machine_expansion_um_per_m_K': 10, 'machine_temperature_degC': 23}. numbers is a "
+      "CircularNumbers. Raises InputError.\n"
       "Definitions: docs/evaluate-geometry.md.\n\n"
       ">>> import abbe, numpy\n"
       ">>> angle = numpy.arange(0, 360, 5.0)\n"

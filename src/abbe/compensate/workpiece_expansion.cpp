@@ -3,10 +3,20 @@
 #include <cmath>
 #include <limits>
 
+#include "abbe/errors/expansion.h"
+
 namespace abbe {
+
+double strain_variance(const WorkpieceExpansion& expansion, double factor) {
+  const double of_coefficient = expansion.standard_uncertainty * factor;
+  const double of_temperature =
+      std::hypot(expansion.coefficient, expansion.standard_uncertainty) * expansion.temperature_uncertainty;
+  return of_coefficient * of_coefficient + of_temperature * of_temperature;
+}
 
 double workpiece_factor(const Machine& machine, const WorkpieceExpansion& expansion, const PoseList& poses,
                         std::size_t pose) {
+  if (expansion.temperature) return *expansion.temperature - kReferenceTemperature;
   const std::size_t j = expansion.state;
   if (j >= poses.state.size() || pose >= poses.state[j].size()) return std::numeric_limits<double>::quiet_NaN();
   return poses.state[j][pose] - machine.states.at(j).reference;
@@ -19,10 +29,7 @@ Eigen::Vector3d expanded_point(const WorkpieceExpansion& expansion, double facto
 Eigen::Matrix3d expanded_point_covariance(const WorkpieceExpansion& expansion, double factor,
                                           const Eigen::Vector3d& point) {
   const Eigen::Vector3d arm = point - expansion.fixed_point;
-  const double of_coefficient = expansion.standard_uncertainty * factor;
-  const double of_temperature =
-      std::hypot(expansion.coefficient, expansion.standard_uncertainty) * expansion.temperature_uncertainty;
-  return (of_coefficient * of_coefficient + of_temperature * of_temperature) * arm * arm.transpose();
+  return strain_variance(expansion, factor) * arm * arm.transpose();
 }
 
 }  // namespace abbe

@@ -18,6 +18,7 @@
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_couplings.h"
+#include "abbe/formats/machine/workpiece_option.h"
 #include "abbe/verify/error_map.h"
 
 namespace abbe {
@@ -162,6 +163,20 @@ LossOverStates loss_over_states(const ControlTableRequest& request, const PoseLi
   return loss;
 }
 
+/// The same request with the workpiece among the errors.
+ControlTableRequest as_errors_alone(const ControlTableRequest& request) {
+  ControlTableRequest result = request;
+  result.workpiece.reset();
+  const auto on_workpiece = [&](const ErrorSet& errors, const Eigen::MatrixXd& covariance) {
+    return errors_on_workpiece(request.machine, *request.workpiece, errors, covariance);
+  };
+  ErrorsOnWorkpiece all = on_workpiece(request.errors, request.covariance);
+  result.errors = std::move(all.errors);
+  result.covariance = std::move(all.covariance);
+  for (ErrorsAtTime& there : result.over) there.errors = on_workpiece(there.errors, {}).errors;
+  return result;
+}
+
 /// Why the tables must not be used.
 void judge(const Making& making, ControlTables& made) {
   const ControlTableRequest& request = making.request;
@@ -202,6 +217,12 @@ std::string LossOverStates::outside_words() const {
 }
 
 ControlTables make_control_tables(const ControlTableRequest& request) {
+  if (request.workpiece) {
+    check_judgement(request);
+    ControlTables made = make_control_tables(as_errors_alone(request));
+    made.workpiece = request.workpiece;
+    return made;
+  }
   refuse_couplings(request.machine, "a table of a control");
   refuse_states_of(request.format, request.machine, request.errors);
   const TableFormat& format = table_format(request.format);

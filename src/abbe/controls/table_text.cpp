@@ -13,6 +13,7 @@
 #include "abbe/report/evaluations/statistics_json.h"
 #include "abbe/report/words/state_words.h"
 #include "abbe/report/words/volumetric_words.h"
+#include "abbe/report/words/workpiece_words.h"
 
 namespace abbe {
 namespace {
@@ -93,7 +94,7 @@ std::string table_text(const TableReport& report) {
   for (const std::string& name : made.left_out) text += fmt::format("  left out: {}\n", name);
   for (const std::string& name : made.left_out_kept)
     text += fmt::format("  kept, because not small together with others: {}\n", name);
-  text += state_line(report.partial.at_state);
+  text += state_line(report.partial.at_state) + workpiece_line(made.workpiece);
   text += errors_carried_text(made);
   text += volumetric_text(made.volumetric);
   text += error_line("what these tables leave of it between their nodes", made.left_by_tables);
@@ -173,6 +174,7 @@ nlohmann::ordered_json table_json(const TableReport& report) {
   json["ideal_not_reached"] = made.ideal_not_reached;
   if (made.uncertainty) json["standard_uncertainty_um"] = statistics_um(*made.uncertainty);
   add_partial_errors(report.partial, json);
+  add_workpiece(made.workpiece, json);
   json["largest_correction_um"] = in_um(made.largest_mm);
   json["largest_correction_urad"] = in_micro(made.largest_rad);
   json["settings"] = made.settings;

@@ -71,14 +71,24 @@ std::vector<ErrorMotion> expansion_terms(const Machine& machine, const ScaleExpa
     term.standard_uncertainty = {0, std::abs(scale) * expansion.standard_uncertainty};
   }
   std::vector<ErrorMotion> terms = {term};
-  if (expansion.temperature_uncertainty > 0) {
+  if (expansion.temperature_uncertainty > 0 || expansion.thermometer_uncertainty > 0) {
     term.state = kNoState;
     term.coefficients = {0, 0};
     const double size = std::hypot(expansion.coefficient, expansion.standard_uncertainty);
-    term.standard_uncertainty = {0, std::abs(scale) * size * expansion.temperature_uncertainty};
+    const double kelvin = expansion.thermometer_uncertainty > 0
+                              ? std::hypot(expansion.temperature_uncertainty, expansion.thermometer_uncertainty)
+                              : expansion.temperature_uncertainty;
+    term.standard_uncertainty = {0, std::abs(scale) * size * kelvin};
     terms.push_back(term);
   }
   return terms;
+}
+
+double thermometer_effect(const Machine& machine, const ScaleExpansion& expansion) {
+  const Axis& axis = machine.axes.at(expansion.axis);
+  const Basis basis = expansion_basis(axis, expansion.fixed_point);
+  const double scale = expansion_direction(axis).sign * 0.5 * (basis.to - basis.from);
+  return scale * expansion.coefficient * expansion.thermometer_uncertainty;
 }
 
 std::optional<ScaleExpansion> expansion_of(const Machine& machine, const ErrorMotion& term) {

@@ -14,6 +14,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/words/corrected_poses_words.h"
 #include "abbe/report/words/state_words.h"
+#include "abbe/report/words/workpiece_words.h"
 
 namespace abbe {
 namespace {
@@ -28,32 +29,22 @@ void require_workpiece_temperature(const CommandsRequest& request) {
 
 /// Coldest and warmest.
 std::pair<double, double> workpiece_temperatures(const CorrectedCommands& result) {
+  if (result.workpiece->temperature) return {*result.workpiece->temperature, *result.workpiece->temperature};
   const std::vector<double>& values = result.poses.state[result.workpiece->state];
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return {*low, *high};
 }
 
-std::string workpiece_line(const CorrectedCommands& result) {
+std::string workpiece_line_of(const CorrectedCommands& result) {
   if (!result.workpiece || result.poses.count() == 0) return {};
-  const WorkpieceExpansion& workpiece = *result.workpiece;
   const auto [low, high] = workpiece_temperatures(result);
-  return fmt::format(
-      "workpiece: {:.6g} um/(m K), right at 20 degC and now at {:.6g}{}, fixed at ({:.6g}, {:.6g}, {:.6g}) mm\n",
-      1e6 * workpiece.coefficient, low, high > low ? fmt::format(" to {:.6g} degC", high) : " degC",
-      workpiece.fixed_point[0], workpiece.fixed_point[1], workpiece.fixed_point[2]);
+  return workpiece_line(*result.workpiece, low, high);
 }
 
-void add_workpiece(const CorrectedCommands& result, nlohmann::ordered_json& json) {
+void add_workpiece_of(const CorrectedCommands& result, nlohmann::ordered_json& json) {
   if (!result.workpiece || result.poses.count() == 0) return;
-  const WorkpieceExpansion& workpiece = *result.workpiece;
   const auto [low, high] = workpiece_temperatures(result);
-  json["workpiece"] = {
-      {"state", result.machine.states[workpiece.state].name},
-      {"coefficient_um_per_m_K", 1e6 * workpiece.coefficient},
-      {"standard_uncertainty_um_per_m_K", 1e6 * workpiece.standard_uncertainty},
-      {"temperature_standard_uncertainty_K", workpiece.temperature_uncertainty},
-      {"temperatures_degC", {low, high}},
-      {"fixed_point_mm", {workpiece.fixed_point[0], workpiece.fixed_point[1], workpiece.fixed_point[2]}}};
+  add_workpiece(result.machine, *result.workpiece, low, high, json);
 }
 
 }  // namespace
@@ -105,7 +96,7 @@ std::string corrected_commands_csv(const CorrectedCommands& result) {
 }
 
 std::string corrected_commands_text(const CorrectedCommands& result) {
-  std::string text = state_line(result.at_state) + workpiece_line(result);
+  std::string text = state_line(result.at_state) + workpiece_line_of(result);
   text += poses_text(result.machine, result.poses, result.corrected, result.leave_out_factor);
   if (result.has_reversals) text += "reversal values are not in these commands: a pose has no direction of approach\n";
   return text;
@@ -115,7 +106,7 @@ nlohmann::ordered_json corrected_commands_json(const CorrectedCommands& result, 
                                                bool written) {
   nlohmann::ordered_json json = poses_json(result.machine, result.poses, result.corrected, output, written);
   add_state(result.at_state, json);
-  add_workpiece(result, json);
+  add_workpiece_of(result, json);
   return json;
 }
 

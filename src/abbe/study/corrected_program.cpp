@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "abbe/compensate/left_out_errors.h"
@@ -14,6 +15,7 @@
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_couplings.h"
+#include "abbe/formats/machine/workpiece_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 
@@ -42,9 +44,36 @@ void check_program_request(const ProgramRequest& request) {
   }
 }
 
-void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& covariance, CorrectedProgram& result) {
+/// All errors of a place, and what is known of them.
+class ErrorsOfPlace {
+ public:
+  ErrorsOfPlace(const ProgramRequest& request, Eigen::MatrixXd covariance,
+                const std::optional<WorkpieceErrors>& of_workpiece)
+      : machine_errors_(request.errors), of_machine_(std::move(covariance)), of_workpiece_(of_workpiece) {}
+
+  ErrorSet errors(const ProgramPlace& place) const {
+    if (!of_workpiece_) return machine_errors_;
+    ErrorSet result = of_workpiece_->with(machine_errors_);
+    const auto& length = place.tool_length;
+    result.tool_offset_error -= of_workpiece_->tool_length_share() * Eigen::Vector3d(length[0], length[1], length[2]);
+    return result;
+  }
+  Eigen::MatrixXd covariance(const ProgramPlace& place) const {
+    return of_workpiece_ ? of_workpiece_->covariance_with(machine_errors_, of_machine_, place.tool_length)
+                         : of_machine_;
+  }
+
+ private:
+  const ErrorSet& machine_errors_;
+  Eigen::MatrixXd of_machine_;
+  const std::optional<WorkpieceErrors>& of_workpiece_;
+};
+
+void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& covariance,
+                         const std::optional<WorkpieceErrors>& of_workpiece, CorrectedProgram& result) {
   const Machine& machine = request.machine;
   const ErrorSet& errors = request.errors;
+  const ErrorsOfPlace all(request, covariance, of_workpiece);
   std::vector<bool> moved;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) moved.push_back(request.words.moves(i));
   const auto at = [&](const ProgramPlace& place) {
@@ -53,7 +82,7 @@ void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& c
     for (const MachineState& state : machine.states) {
       sides.push_back(state.kind == StateKind::approach ? place.approach[state.axis] : 0.0);
     }
-    return uncertainty_at(machine, errors, covariance, place, moved, sides);
+    return uncertainty_at(machine, all.errors(place), all.covariance(place), place, moved, sides);
   };
   result.largest = at(result.report.largest_shift);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) result.by_axis.push_back(at(result.report.by_axis[i]));
@@ -82,12 +111,16 @@ CorrectedProgram correct_program(const ProgramRequest& request, std::string_view
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   const Machine& machine = request.machine;
   const Eigen::MatrixXd covariance = parameter_covariance(request.errors, request.covariance);
+  std::optional<WorkpieceErrors> of_workpiece;
+  if (request.workpiece) of_workpiece = workpiece_errors(machine, *request.workpiece, request.errors);
   CorrectedProgram result;
   result.at_state = request.at_state;
+  result.workpiece = request.workpiece;
   ErrorSet corrected_errors = request.errors;
   if (request.leave_out_factor > 0) {
     result.left_out = leave_out_uncertain(machine, corrected_errors, covariance, request.leave_out_factor);
   }
+  if (of_workpiece) corrected_errors = of_workpiece->with(corrected_errors);
   const MachinePlanes planes(machine, request.words);
   ProgramBudget budget(static_cast<std::size_t>(1e6 * std::min(request.limits.megabytes, kMostOfALimit)),
                        60 * std::min(request.limits.minutes, kMostOfALimit), stop);
@@ -98,6 +131,7 @@ CorrectedProgram correct_program(const ProgramRequest& request, std::string_view
   ProgramCorrectionOptions correction_options = request.correction;
   correction_options.limit = 1e-3 * limit_um;
   correction_options.budget = &budget;
+  if (of_workpiece) correction_options.tool_length_share = of_workpiece->tool_length_share();
   ProgramCorrection correction(machine, corrected_errors, request.words, correction_options);
   if (!correction.problem().empty()) throw InputError({.file = request.errors_file}, correction.problem());
   ToolCentreMoves tool_centre(correction);
@@ -110,7 +144,7 @@ CorrectedProgram correct_program(const ProgramRequest& request, std::string_view
                      "a tool centre move, for which the machine has no solution here",
                      "X, Y and Z as three independent linear axes without a rotary axis between them");
   }
-  state_uncertainties(request, covariance, result);
+  state_uncertainties(request, covariance, of_workpiece, result);
   if (result.text.spent == ProgramBudget::Spent::nothing) {
     result.refused = reasons_to_refuse(limit_um, request.allowed, machine, result.report);
   } else {

@@ -4,10 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/machine/workpiece_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/evaluations/statistics_json.h"
 #include "abbe/report/words/state_words.h"
 #include "abbe/report/words/volumetric_words.h"
+#include "abbe/report/words/workpiece_words.h"
 #include "abbe/study/results.h"
 
 namespace abbe {
@@ -66,6 +68,18 @@ std::string orientation_line(const char* name, const SampleStatistics& s) {
 }  // namespace
 
 ErrorsMap map_errors(const ErrorsMapRequest& request, const JobOptions& options) {
+  if (request.workpiece) {
+    ErrorsMapRequest with_it = request;
+    with_it.workpiece.reset();
+    ErrorsOnWorkpiece all =
+        errors_on_workpiece(request.machine, *request.workpiece, request.errors.errors, request.errors.covariance);
+    with_it.errors.errors = std::move(all.errors);
+    with_it.errors.covariance = std::move(all.covariance);
+    ErrorsMap map = map_errors(with_it, options);
+    map.partial = partial_errors(request.machine, request.errors);
+    map.workpiece = request.workpiece;
+    return map;
+  }
   refuse_states(request.machine, request.errors.errors, "a map of errors", UsableStates::of_commands);
   if (request.minus)
     refuse_states(request.machine, request.minus->errors, "a map of errors", UsableStates::of_commands);
@@ -117,6 +131,7 @@ nlohmann::ordered_json errors_map_json(const ErrorsMap& map) {
     }
   }
   add_partial_errors(map.partial, json);
+  add_workpiece(map.workpiece, json);
   return json;
 }
 
@@ -126,7 +141,7 @@ std::string errors_map_text(const ErrorsMap& map) {
   std::string text =
       fmt::format("{} poses of {}{}\n", before.statistics.count, map.machine.name,
                   map.partial.is_partial() ? "; known are " + map.partial.short_words() + " that it can have" : "");
-  text += state_line(map.partial.at_state);
+  text += state_line(map.partial.at_state) + workpiece_line(map.workpiece);
   if (before.statistics.count == 0) return text;
   if (map.figures) {
     text += volumetric_text(*map.figures);

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "abbe/errors/expansion.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
 
 // A stream of its own, apart from those of the other true errors.
-constexpr std::uint64_t kExpansionStream = 1'000'000'033;
+constexpr std::uint64_t kExpansionStream = 1'000'000'033, kThermometerStream = 1'000'100'033;
 
 const IdentificationPlan& plan_in_use(const Study& study, const StudyResult& result) {
   return result.terms ? result.terms->plan : *study.identification;
@@ -27,6 +29,53 @@ void note_correlation(const Identification& identified, Eigen::Index at, FoundEx
     found.correlated = identified.parameters[static_cast<std::size_t>(k)].name;
   }
 }
+
+/// What is known of the temperatures of one thermometer: errors of their own, and one that they share.
+JointPrior common_prior(const std::vector<ExpansionParameters>& members) {
+  const auto count = static_cast<Eigen::Index>(members.size());
+  Eigen::VectorXd effect(count), uncertainty(count);
+  JointPrior prior;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const ExpansionParameters& one = members[static_cast<std::size_t>(i)];
+    prior.parameters.push_back({ParameterId::kMachine, one.coefficient});
+    effect[i] = one.identified->expansion->thermometer_effect;
+    uncertainty[i] = one.identified->expansion->coefficient.standard_uncertainty;
+  }
+  Eigen::MatrixXd covariance = effect * effect.transpose();
+  covariance.diagonal() = uncertainty.cwiseAbs2();
+  prior.value = Eigen::VectorXd::Zero(count);
+  prior.information = Ldlt<>(covariance).solve_columns(Eigen::MatrixXd::Identity(count, count));
+  prior.residual_count = static_cast<double>(count);
+  return prior;
+}
+
+/// Numbers of the truth of a study's expansions.
+class TrueExpansions {
+ public:
+  explicit TrueExpansions(std::uint64_t seed) : seed_(seed) {}
+
+  double draw(const IdentifiedExpansion& expansion) {
+    const SetupNumber& known = expansion.coefficient;
+    RandomStream random(seed_, stream_++);
+    if (known.knowledge != Knowledge::within) return known.value;
+    if (expansion.thermometer.empty()) return known.value + known.standard_uncertainty * random.normal();
+    const double effect = expansion.thermometer_effect, all = known.standard_uncertainty;
+    const double own = std::sqrt(std::max(0.0, all * all - effect * effect));
+    return known.value + own * random.normal() + effect * error_of(expansion.thermometer);
+  }
+
+ private:
+  /// In standard uncertainties; the same for all scales of the thermometer.
+  double error_of(const std::string& thermometer) {
+    const auto found = errors_.find(thermometer);
+    if (found != errors_.end()) return found->second;
+    RandomStream random(seed_, kThermometerStream + errors_.size());
+    return errors_.emplace(thermometer, random.normal()).first->second;
+  }
+
+  std::uint64_t seed_, stream_ = kExpansionStream;
+  std::map<std::string, double> errors_;
+};
 
 }  // namespace
 
@@ -64,10 +113,23 @@ void keep_expansion_estimates(const IdentificationPlan& plan, Problem& problem) 
 }
 
 void add_expansion_priors(const IdentificationPlan& plan, Problem& problem) {
+  std::vector<ExpansionParameters> with_thermometer;
   for (const ExpansionParameters& one : expansion_parameters(plan, problem.errors)) {
     const SetupNumber& known = one.identified->expansion->coefficient;
     if (known.knowledge != Knowledge::within) continue;
+    if (!one.identified->expansion->thermometer.empty()) {
+      with_thermometer.push_back(one);
+      continue;
+    }
     problem.priors.push_back({{ParameterId::kMachine, one.coefficient}, known.value, known.standard_uncertainty});
+  }
+  while (!with_thermometer.empty()) {
+    const std::string name = with_thermometer.front().identified->expansion->thermometer;
+    const auto others = std::stable_partition(
+        with_thermometer.begin(), with_thermometer.end(),
+        [&](const ExpansionParameters& one) { return one.identified->expansion->thermometer == name; });
+    problem.joint_priors.push_back(common_prior({with_thermometer.begin(), others}));
+    with_thermometer.erase(with_thermometer.begin(), others);
   }
 }
 
@@ -84,14 +146,12 @@ bool has_known_expansions_only(const IdentificationPlan& plan, std::size_t state
 
 void add_true_expansions(const Study& study, std::uint64_t seed, ErrorSet& errors) {
   if (!study.identification) return;
-  std::uint64_t stream = kExpansionStream;
+  TrueExpansions drawn(seed);
   for (const IdentifiedMotion& one : study.identification->motions) {
     if (!one.expansion) continue;
-    const SetupNumber& known = one.expansion->coefficient;
-    RandomStream random(seed, stream++);
-    const double drawn =
-        known.knowledge == Knowledge::within ? known.value + known.standard_uncertainty * random.normal() : known.value;
-    errors.motions.push_back({one.axis, one.component, one.basis, {0, known.truth.value_or(drawn)}, {}, one.state});
+    const double value = drawn.draw(*one.expansion);
+    errors.motions.push_back(
+        {one.axis, one.component, one.basis, {0, one.expansion->coefficient.truth.value_or(value)}, {}, one.state});
   }
 }
 

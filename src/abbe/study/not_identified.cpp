@@ -91,6 +91,13 @@ ExtendedProblem extended_problem(const Study& study, const StudyResult& result, 
   for (Prior& prior : problem.priors) {
     if (prior.parameter.is_machine()) prior.parameter.index = moved(prior.parameter.index);
   }
+  for (JointPrior prior : before.joint_priors) {
+    const bool of_machine = std::all_of(prior.parameters.begin(), prior.parameters.end(),
+                                        [](const ParameterId& id) { return id.is_machine(); });
+    if (!of_machine) continue;
+    for (ParameterId& id : prior.parameters) id.index = moved(id.index);
+    problem.joint_priors.push_back(std::move(prior));
+  }
 
   std::size_t next_motion = before.errors.motions.size(), next = old_motions;
   std::size_t next_location = all_motions + old_locations;

@@ -18,6 +18,7 @@ struct ErrorAlong;
 struct ChainLevers {
   std::array<double, kMaxAxes> from_point{};  ///< from Axis::point
   std::array<double, kMaxAxes> from_line{};   ///< rotary: from the axis line
+  double tool_error = 0;                      ///< of the functional point, by the length of the tool
 };
 
 /// Bounds of how the axes move over one piece of a path, over 0 <= s <= 1, or over several pieces at once (the largest
@@ -75,6 +76,8 @@ class PieceBounder {
   /// Reversal values, which the errors given before do not bring in.
   void set_play(const PlayBounds& play) { play_ = play; }
   const PlayBounds& play() const { return play_; }
+  /// As ProgramCorrectionOptions.
+  void set_tool_length_share(double share) { tool_length_share_ = share; }
   bool is_point_axis(std::size_t i) const { return i == point_axes_[0] || i == point_axes_[1] || i == point_axes_[2]; }
 
   /// False if a rotary axis stands between X, Y and Z, or if they are dependent: no bound for tool centre programs.
@@ -140,7 +143,7 @@ class PieceBounder {
   std::vector<AxisModel> axes_;
   FactorBounds factors_;
   PlayBounds play_;
-  double tool_error_ = 0;
+  double tool_error_ = 0, tool_length_share_ = 0;
   std::array<std::size_t, 3> point_axes_;  ///< chain order
   bool has_point_axes_ = false;
   double point_condition_ = 1;  ///< 1 / smallest singular value of the point axes' directions

@@ -24,6 +24,9 @@ struct ProgramCorrectionOptions {
   /// force and no more than the tolerance of the orientation; 0: an eighth of the tolerances and part of them, else
   /// what it costs comes on top of them.
   double reversal_dead_band = 0;
+  /// By this share of the tool length offset in force the tool is too long: of a workpiece that expands
+  /// (WorkpieceErrors), because the machine file's tool alone is in the errors.
+  double tool_length_share = 0;
   double limit = 0;                     ///< mm; corrections of the functional point above it are counted; 0: no limit
   std::vector<double> rest;             ///< [axes] commands of axes that no word moves, mm or rad; empty: zero
   int threads = 0;                      ///< 0: as many as the machine has

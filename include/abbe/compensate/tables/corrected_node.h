@@ -40,8 +40,9 @@ struct CorrectedNode {
 /// allocate.
 class NodeCorrection {
  public:
+  /// @param tool_length_share  as ProgramCorrectionOptions
   NodeCorrection(const Machine& machine, const ErrorSet& errors, const WordAxes& words, const std::vector<double>& rest,
-                 const CorrectionOptions& options);
+                 const CorrectionOptions& options, double tool_length_share = 0);
 
   /// Number of the tool of that length; prepares it where it is new. Not thread-safe.
   std::size_t tool(const std::array<double, 3>& length);
@@ -80,6 +81,7 @@ class NodeCorrection {
   Machine machine_;
   ErrorSet errors_;
   CorrectionOptions options_;
+  double tool_length_share_;
   WordKinematics kinematics_;
   std::vector<std::size_t> held_;
   std::vector<std::size_t> approaches_;  ///< states of the kind approach that the errors use

@@ -15,11 +15,15 @@ namespace abbe {
 struct PositioningFile {
   bool rotary = false;                       ///< targets and deviations are rad, else mm
   std::vector<PositioningReading> readings;  ///< in the order of the file
+  /// Of the axis and of the instrument, degC, and when each reading was taken, s; [readings], or empty: not in the
+  /// file.
+  std::vector<double> machine_temperature{}, instrument_temperature{}, time{};
 };
 
 /// Reads positioning readings from a CSV: columns `target_mm` (or `_deg` for a rotary axis), `direction` (+ or -),
-/// `deviation_um` (or `_arcsec`) or `actual_mm` (or `_deg`), and optionally `run`, which may hold any name; see
-/// docs/evaluate.md. Every row counts or is an error.
+/// `deviation_um` (or `_arcsec`) or `actual_mm` (or `_deg`), and optionally `run`, which may hold any name, and, of a
+/// linear axis, `machine_degC`, `instrument_degC` and `time_min`; see docs/evaluate.md. Every row counts or is an
+/// error.
 /// @param mapping  of a file whose columns have other names
 /// @throws InputError also for a target that one run approaches twice from the same side, and for an actual angle more
 ///         than half a turn from its target

@@ -123,8 +123,10 @@ struct Setup {
 /// What is known before the readings of the term of an expansion, whose second coefficient alone is identified
 /// (abbe/errors/expansion.h).
 struct IdentifiedExpansion {
-  SetupNumber coefficient;      ///< of the error motion, mm (per K of its state), with the sign of the axis
-  bool is_temperature = false;  ///< the term without a state, for the uncertainty of the temperature
+  SetupNumber coefficient;        ///< of the error motion, mm (per K of its state), with the sign of the axis
+  bool is_temperature = false;    ///< the term without a state, for the uncertainty of the temperature
+  std::string thermometer{};      ///< of the latter: what it shares with those of the same thermometer; empty: nothing
+  double thermometer_effect = 0;  ///< mm, with a sign (abbe/errors/expansion.h)
 };
 
 /// One error motion to be identified.

@@ -1,6 +1,11 @@
 #pragma once
 
+#include <array>
+#include <string>
+#include <vector>
+
 #include "abbe/report/evaluations/evaluation_report.h"
+#include "abbe/verify/evaluations/differential_expansion.h"
 #include "abbe/verify/evaluations/positioning.h"
 #include "abbe/verify/evaluations/positioning_uncertainty.h"
 
@@ -10,10 +15,23 @@ namespace abbe {
 EvaluationFigure report_figure(const std::string& symbol, const std::string& name, const EvaluatedFigure& figure,
                                bool rotary = false);
 
+/// Readings that were corrected to 20 degC before they were evaluated.
+struct PositioningCorrection {
+  DifferentialExpansion expansion;
+  bool has_machine = false, has_instrument = false;  ///< bodies with a temperature
+  BodyTemperatures lowest, highest;                  ///< over the readings
+  PositioningEvaluation as_read;
+  /// Expanded uncertainties (k = 2) of positioning_figures() by the correction, mm.
+  std::array<double, kPositioningFigures> expanded{};
+  std::vector<PositioningUncertainty::Contribution> contributions;
+};
+
 /// Figures, table of the targets, plot and notes of an axis by ISO 230-2.
 /// @param uncertainty  null: none was stated
+/// @param correction   of the readings of `evaluation`; null: they are as read
 EvaluationReport positioning_report(const PositioningEvaluation& evaluation, bool rotary, const std::string& file,
-                                    const PositioningUncertainty* uncertainty);
+                                    const PositioningUncertainty* uncertainty,
+                                    const PositioningCorrection* correction = nullptr);
 
 /// Something that ISO 230-2 asks of targets and runs and readings do not have.
 struct PositioningShortfall {

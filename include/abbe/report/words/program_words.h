@@ -1,12 +1,14 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/program/program_report.h"
 #include "abbe/compensate/program/program_uncertainty.h"
+#include "abbe/compensate/workpiece_expansion.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/nc/nc_program.h"
 #include "abbe/machine/machine.h"
@@ -35,7 +37,8 @@ struct ProgramWordsRequest {
 
 /// What was done to a program, with the uncertainties of the largest corrections.
 struct CorrectedProgram {
-  StateValues at_state{};  ///< at which the errors are taken
+  StateValues at_state{};                         ///< at which the errors are taken
+  std::optional<WorkpieceExpansion> workpiece{};  ///< for which the program is corrected
   ProgramReport report;
   NcProgramResult text;
   PlaceUncertainty largest;                  ///< at ProgramReport::largest_shift

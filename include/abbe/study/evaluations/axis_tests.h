@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "abbe/formats/evaluations/evaluation_line_file.h"
 #include "abbe/formats/evaluations/evaluation_positioning.h"
 #include "abbe/formats/evaluations/evaluation_rotation_file.h"
+#include "abbe/formats/evaluations/temperature_record.h"
+#include "abbe/study/evaluations/expansion_numbers.h"
 #include "abbe/verify/evaluations/circular.h"
 #include "abbe/verify/evaluations/circular_diagnosis.h"
 #include "abbe/verify/evaluations/diagonals.h"
@@ -24,11 +27,16 @@ namespace abbe {
 
 /// Positioning of an axis (ISO 230-2).
 ///
-/// Refused: what is known of a linear axis where the readings are those of a rotary one, and the other way round.
+/// Refused: what is known of a linear axis where the readings are those of a rotary one, and the other way round;
+/// temperatures without a coefficient, and coefficients of a body without a temperature where another one has it.
 struct PositioningTest {
   PositioningFile readings;
   /// What is known of the measurement, of a linear and of a rotary axis: --instrument-um, --instrument-arcsec, ...
   PositioningUncertaintyInput linear, rotary;
+  /// Temperatures of a linear axis and of the instrument, besides those of the readings: deviations are corrected to 20
+  /// degC. The coefficients are those of `linear`.
+  ExpansionNumbers expansion{};
+  std::optional<TemperatureRecord> temperatures{};  ///< --temperatures: over the time of the readings
 };
 
 /// A contribution to the uncertainty of a positioning test, as a user states it.
@@ -57,8 +65,9 @@ struct CircularTest {
   double reading_uncertainty = 0;                         ///< --u-reading-um: standard, of one reading; 0: not stated
   double length_uncertainty = 0;                          ///< --u-length-um: standard, of what all readings share
   bool length_calibrated = true;                          ///< --length-not-calibrated
-  double reversal_margin = 0;  ///< --skip-reversal-deg: readings so near a reversal have no part in the causes
-  double feed = 0;             ///< --feed-mm-min: along the path; 0: not known
+  double reversal_margin = 0;    ///< --skip-reversal-deg: readings so near a reversal have no part in the causes
+  double feed = 0;               ///< --feed-mm-min: along the path; 0: not known
+  ExpansionNumbers expansion{};  ///< temperatures of the scales and the instrument: radii are corrected to 20 degC
 };
 
 /// The numerical results of a circular test, mm and rad.

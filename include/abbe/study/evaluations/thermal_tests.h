@@ -1,10 +1,10 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <span>
 
 #include "abbe/formats/evaluations/evaluation_thermal_file.h"
+#include "abbe/study/evaluations/test_number.h"
 #include "abbe/verify/thermal/axis_distortion.h"
 #include "abbe/verify/thermal/etve.h"
 #include "abbe/verify/thermal/spindle_distortion.h"
@@ -13,19 +13,6 @@ namespace abbe {
 
 // Thermal tests of ISO 230-3 for evaluate_readings(); lengths in mm, angles in rad, times in s, temperatures in degC.
 // Definitions: docs/evaluate-thermal.md.
-
-/// A number that a user may state about a test.
-template <class Test>
-struct TestNumber {
-  const char* option;   ///< of `abbe evaluate`: "--u-reading-um"
-  double Test::*value;  ///< not a number: not stated
-  double unit;          ///< of the option's value
-  double from, to;      ///< range of the option's value
-  const char* words;    ///< what it is
-};
-
-/// A number that has not been stated.
-inline constexpr double kNotStated = std::numeric_limits<double>::quiet_NaN();
 
 /// Environmental temperature variation error, and the uncertainty of a measured length by temperature.
 ///

@@ -2,10 +2,9 @@
 
 #include <vector>
 
-namespace abbe {
+#include "abbe/errors/expansion.h"
 
-/// Reference temperature of lengths (ISO 1), degC.
-inline constexpr double kReferenceTemperature = 20;
+namespace abbe {
 
 /// What is known of the temperature of a measured length. Uncertainties are standard ones; 0: none.
 struct LengthTemperatureInput {

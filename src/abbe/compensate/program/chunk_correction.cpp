@@ -22,13 +22,14 @@ ChunkCorrection::ChunkCorrection(const Machine& machine, const ErrorSet& errors,
     : machine_(machine),
       words_(words),
       options_(options),
-      correction_(machine, errors, words, options.rest, options.inverse),
+      correction_(machine, errors, words, options.rest, options.inverse, options.tool_length_share),
       problem_(correction_.problem()) {
   if (problem_.empty() && errors.composition != Composition{}) {
     problem_ = "errors are composed in another way than that of ISO 230, which programs are not corrected for";
   }
   if (!problem_.empty()) return;
   bounder_.emplace(machine_, errors, std::array<std::size_t, 3>{words_.axis[0], words_.axis[1], words_.axis[2]});
+  bounder_->set_tool_length_share(options_.tool_length_share);
   bool turns = false;
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
     turns = turns || (machine_.axes[i].kind == AxisKind::rotary && words_.moves(i));

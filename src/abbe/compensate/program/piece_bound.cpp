@@ -17,6 +17,7 @@ double square(double x) { return x * x; }
 
 void PieceBounder::levers(const double* positions, const Eigen::Vector3d& tool, ChainLevers& result) const {
   Eigen::Vector3d x = machine_.tool_reference + tool;
+  result.tool_error = std::abs(tool_length_share_) * (tool - machine_.tool_offset).norm();
   for (std::size_t i = axes_.size(); i-- > 0;) {
     const Axis& axis = machine_.axes[i];
     const double command = chain_sign(axis) * positions[i];
@@ -272,7 +273,7 @@ PieceBound PieceBounder::bound(const ChainLevers& levers, PieceMotion& motion) c
   const double bend = stage_end > 0 ? move_point_axes(levers, motion, stages) : motion.arc_bend;
   Passing at{levers, motion, bend, {}, {}};
   set_states(at);
-  at.point.off = tool_error_;
+  at.point.off = tool_error_ + levers.tool_error;
   for (std::size_t i = axes_.size(); i-- > 0;) {
     if (axes_[i].rotary) {
       pass_rotary(i, at);

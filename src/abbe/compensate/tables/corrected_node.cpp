@@ -9,10 +9,12 @@
 namespace abbe {
 
 NodeCorrection::NodeCorrection(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
-                               const std::vector<double>& rest, const CorrectionOptions& options)
+                               const std::vector<double>& rest, const CorrectionOptions& options,
+                               double tool_length_share)
     : machine_(machine),
       errors_(errors),
       options_(options),
+      tool_length_share_(tool_length_share),
       kinematics_(machine, words, rest),
       nominal_(machine, ErrorSet{}, Body::tool, Body::workpiece) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -31,9 +33,12 @@ std::size_t NodeCorrection::tool(const std::array<double, 3>& length) {
   }
   Machine with_tool = machine_;
   // A longer tool has its functional point further from the spindle: opposite to the offset of the axes.
-  with_tool.tool_offset -= Eigen::Vector3d(length[0], length[1], length[2]);
+  const Eigen::Vector3d longer(length[0], length[1], length[2]);
+  with_tool.tool_offset -= longer;
   const Eigen::Vector3d point = with_tool.tool_offset;
-  tools_.push_back({length, point, std::make_unique<CompensatedInverse>(with_tool, errors_, options_, held_)});
+  ErrorSet errors = errors_;
+  errors.tool_offset_error -= tool_length_share_ * longer;
+  tools_.push_back({length, point, std::make_unique<CompensatedInverse>(with_tool, errors, options_, held_)});
   return tools_.size() - 1;
 }
 

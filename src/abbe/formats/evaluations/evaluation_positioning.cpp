@@ -24,7 +24,10 @@ enum PositioningColumn : std::size_t {
   kDeviationLength,
   kDeviationAngle,
   kActualLength,
-  kActualAngle
+  kActualAngle,
+  kMachineTemperature,
+  kInstrumentTemperature,
+  kTime
 };
 
 std::vector<CsvColumn> wanted_columns(bool diagonals) {
@@ -37,6 +40,10 @@ std::vector<CsvColumn> wanted_columns(bool diagonals) {
       columns.push_back({base, quantity, false, false, CsvColumn::Range::any});
     }
   }
+  if (diagonals) return columns;
+  columns.push_back({"machine", Quantity::temperature, false, false, CsvColumn::Range::any});
+  columns.push_back({"instrument", Quantity::temperature, false, false, CsvColumn::Range::any});
+  columns.push_back({"time", Quantity::time, false, false, CsvColumn::Range::any});
   return columns;
 }
 
@@ -69,6 +76,7 @@ class PositioningReader {
                        rotary_ ? "angles" : "lengths"),
            fmt::format("{}_{}", base, rotary_ ? "arcsec or _deg" : "um or _mm"));
     }
+    if (rotary_) refuse_temperatures();
     read_directions();
     refuse_repetitions();
   }
@@ -76,6 +84,7 @@ class PositioningReader {
   bool rotary() const { return rotary_; }
   std::size_t rows() const { return csv_.rows; }
   const CsvValues& diagonal() const { return csv_.columns[kDiagonal]; }
+  const std::vector<double>& numbers(PositioningColumn column) const { return csv_.columns[column].numbers; }
 
   PositioningReading reading(std::size_t row) const {
     const double target = csv_.columns[rotary_ ? kTargetAngle : kTargetLength].numbers[row];
@@ -107,6 +116,14 @@ class PositioningReader {
     }
     if (!present(length) && !present(angle)) fail(base, "missing column", expected);
     return present(length);
+  }
+
+  void refuse_temperatures() const {
+    for (const std::size_t column : {kMachineTemperature, kInstrumentTemperature}) {
+      if (!present(column)) continue;
+      fail(csv_.columns[column].header, "is the temperature of a length, but the targets are angles",
+           "no such column of a rotary axis");
+    }
   }
 
   void read_directions() {
@@ -155,6 +172,9 @@ PositioningFile positioning_readings_of(const PositioningReader& reader) {
   result.rotary = reader.rotary();
   result.readings.reserve(reader.rows());
   for (std::size_t row = 0; row < reader.rows(); ++row) result.readings.push_back(reader.reading(row));
+  result.machine_temperature = reader.numbers(kMachineTemperature);
+  result.instrument_temperature = reader.numbers(kInstrumentTemperature);
+  result.time = reader.numbers(kTime);
   return result;
 }
 

@@ -75,6 +75,19 @@ TEST(PositioningFile, AColumnWithoutAUnitIsToldThoseOfLengthsAndAngles) {
             "p.csv:1:21: deviation_kg: 'kg' is not a unit of a length or an angle; expect");
 }
 
+TEST(PositioningFile, MayHaveTemperaturesAndTimes) {
+  const PositioningFile file = parse_positioning(
+      "time_min,direction,target_mm,deviation_um,machine_degC,instrument_degC\n1,+,0,0,22.5,21\n2,-,0,1,23,21.5\n",
+      "p.csv");
+  EXPECT_EQ(file.machine_temperature, (std::vector<double>{22.5, 23}));
+  EXPECT_EQ(file.instrument_temperature, (std::vector<double>{21, 21.5}));
+  EXPECT_EQ(file.time, (std::vector<double>{60, 120}));
+  EXPECT_TRUE(parse_positioning("direction,target_mm,deviation_um\n+,0,0\n", "p.csv").machine_temperature.empty());
+  EXPECT_EQ(refused("direction,target_deg,deviation_arcsec,machine_degC\n+,0,0,20\n"),
+            "p.csv: machine_degC: is the temperature of a length, but the targets are angles; expected no such column "
+            "of a rotary axis");
+}
+
 TEST(DiagonalsFile, SortsReadingsByTheNameOfTheDiagonal) {
   const auto diagonals = parse_diagonals(
       "diagonal,run,direction,target_mm,deviation_um\n+X+Y+Z,1,+,0,1\n-X+Y+Z,1,+,0,2\n+X+Y+Z,1,+,50,3\n", "d.csv");

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "abbe/formats/evaluations/sensor_columns.h"
-#include "abbe/formats/files/text_file.h"
 
 namespace abbe {
 namespace {
@@ -157,13 +156,13 @@ AxisDistortionReadings parse_axis_distortion(const NamedColumns& columns) {
 }
 
 ThermalReadings read_thermal(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_thermal(file.text(), path.string(), mapping);
+  return read_sensor_table(path, time_column(), mapping,
+                           [&](std::string_view text) { return parse_thermal(text, path.string(), mapping); });
 }
 
 AxisDistortionReadings read_axis_distortion(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_axis_distortion(file.text(), path.string(), mapping);
+  return read_sensor_table(path, axis_thermal_columns(), mapping,
+                           [&](std::string_view text) { return parse_axis_distortion(text, path.string(), mapping); });
 }
 
 }  // namespace abbe

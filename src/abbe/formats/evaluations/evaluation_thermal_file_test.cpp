@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
+#include "abbe/formats/files/empty_folder_for_test.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
 
@@ -115,6 +118,25 @@ TEST(AxisDistortionFile, SaysWhatIsWrongAndWhere) {
             "them");
   EXPECT_THAT(refused_axis("time_s,target_mm,deviation_um\n0,5,1\n0,9,1\n0,5,1\n"),
               StartsWith("t.csv:4: time_s: 0 s comes behind 0 s"));
+}
+
+TEST(ThermalFile, OfAnotherProgramIsReadWithItsUnits) {
+  const std::filesystem::path path = test::empty_folder("thermal_file") / "log.csv";
+  std::ofstream(path) << "time [min];Z1 [mm];A [mrad];air_degC\n0;0,0015;0,25;20,5\n10;0,0025;0,5;\n20;-0,001;;21\n";
+  const ThermalReadings readings = read_thermal(path);
+  ASSERT_EQ(readings.displacements.size(), 1U);
+  EXPECT_EQ(readings.displacements[0].name, "Z1");
+  EXPECT_EQ(readings.displacements[0].time, (std::vector<double>{0, 600, 1200}));
+  EXPECT_EQ(readings.displacements[0].values, (std::vector<double>{0.0015, 0.0025, -0.001}));
+  ASSERT_EQ(readings.angles.size(), 1U);
+  EXPECT_EQ(readings.angles[0].time.size(), 2U);
+  EXPECT_DOUBLE_EQ(readings.angles[0].values[1], 0.5e-3);
+  EXPECT_EQ(readings.temperatures[0].values, (std::vector<double>{20.5, 21}));
+  std::ofstream(path) << "time_min;speed\n0;1,5\n1;2,5\n";
+  EXPECT_EQ(
+      message_of([&] { read_thermal(path); }).substr(path.string().size()),
+      ":1: speed: the name of this column does not end in a unit of a length, an angle or a temperature; expected "
+      "a name such as X1_um, A_urad or air_degC");
 }
 
 }  // namespace

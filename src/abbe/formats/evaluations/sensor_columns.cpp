@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "abbe/formats/import/foreign_unit.h"
+#include "abbe/formats/import/table_layout.h"
 #include "abbe/formats/text/csv_header.h"
 
 namespace abbe {
@@ -75,6 +77,34 @@ std::vector<CsvColumn> with_sensor_columns(std::string_view text, const std::str
 std::vector<CsvColumn> with_sensor_columns(const NamedColumns& columns, std::vector<CsvColumn> known) {
   const std::size_t count = known.size();
   for (const NamedColumn& column : columns) add_sensor(column.name, {.field = column.name}, "", count, known);
+  return known;
+}
+
+std::vector<CsvColumn> with_foreign_sensors(std::string_view text, const std::string& file,
+                                            std::vector<CsvColumn> known) {
+  const std::size_t count = known.size();
+  FoundLayout found;
+  try {
+    found = find_layout(text, file);
+  } catch (const InputError&) {
+    return known;  // what is wrong with it, the reader of the table says
+  }
+  for (std::size_t i = 0; i < found.names.size(); ++i) {
+    auto [name, unit] = split_header(found.names[i]);
+    const std::string row(without_brackets(found.units[i]));
+    if (!row.empty() && row != "-") {
+      name = unit.empty() ? found.names[i] : name;
+      unit = row;
+    }
+    const auto end = known.begin() + static_cast<std::ptrdiff_t>(count);
+    if (std::any_of(known.begin(), end, [&, &base = name](const CsvColumn& column) { return column.base == base; }))
+      continue;
+    for (const Quantity quantity : {Quantity::length, Quantity::angle}) {
+      if (foreign_unit(unit, quantity) == nullptr) continue;
+      known.push_back({name, quantity, false, false, CsvColumn::Range::any});
+      known.back().may_be_empty = true;
+    }
+  }
   return known;
 }
 

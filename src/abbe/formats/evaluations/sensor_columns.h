@@ -2,9 +2,13 @@
 
 // Internal to formats: columns of sensors whose names a file chooses.
 #include <cstddef>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/formats/text/named_columns.h"
 #include "abbe/formats/text/placed_table.h"
@@ -19,6 +23,21 @@ namespace abbe {
 std::vector<CsvColumn> with_sensor_columns(std::string_view text, const std::string& file, const ColumnMapping& mapping,
                                            std::vector<CsvColumn> known);
 std::vector<CsvColumn> with_sensor_columns(const NamedColumns& columns, std::vector<CsvColumn> known);
+
+/// The known columns and, behind them, one for each name with a unit of a length or an angle as other programs write
+/// it: "Z1 [mm]", or a row of units. For plain_table(); where no table is found, the known ones alone.
+std::vector<CsvColumn> with_foreign_sensors(std::string_view text, const std::string& file,
+                                            std::vector<CsvColumn> known);
+
+/// What `parse` makes of a file of sensors that may be packed, in another encoding, or a table that Abbe did not write.
+template <class Parse>
+auto read_sensor_table(const std::filesystem::path& path, const std::vector<CsvColumn>& known,
+                       const ColumnMapping& mapping, const Parse& parse) {
+  const UnpackedFile file(path);
+  const std::optional<std::string> decoded = text_in_utf8(file.text(), path.string());
+  const std::string_view text = decoded ? std::string_view(*decoded) : file.text();
+  return parse_readable_table(text, path.string(), with_foreign_sensors(text, path.string(), known), mapping, parse);
+}
 
 /// The readings of a column in some rows, without the empty fields.
 /// @param time  column of the times

@@ -72,7 +72,8 @@ std::size_t read_state_of_error(TomlTable& table, const Machine& machine, States
 }
 
 /// Tables `expansion`: error motions like the others, which follow those of the file. @throws InputError
-void read_expansions(TomlTable& root, const Machine& machine, StatesOfErrors states, ErrorSet& errors) {
+std::vector<ScaleExpansion> read_expansions(TomlTable& root, const Machine& machine, StatesOfErrors states,
+                                            ErrorSet& errors) {
   std::vector<ScaleExpansion> expansions;
   for (TomlTable& table : root.tables("expansion")) {
     if (table.has("state")) read_state_of_error(table, machine, states);
@@ -84,6 +85,7 @@ void read_expansions(TomlTable& root, const Machine& machine, StatesOfErrors sta
     const std::vector<ErrorMotion> terms = expansion_terms(machine, expansions.back());
     errors.motions.insert(errors.motions.end(), terms.begin(), terms.end());
   }
+  return expansions;
 }
 
 /// What no error of an axis is, and from where on a computation need not have a result.
@@ -277,7 +279,8 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     table.finish();
     errors.motions.push_back(std::move(motion));
   }
-  read_expansions(root, machine, states, errors);
+  const std::size_t first_expansion = errors.parameters().size() - 3;  // the last are those of the tool offset
+  const std::vector<ScaleExpansion> expansions = read_expansions(root, machine, states, errors);
   for (TomlTable& table : root.tables("location")) {
     LocationError location;
     read_name(table, machine, true, location.axis, location.component);
@@ -339,6 +342,9 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     contents.covariance = parse_covariance(file.text(), csv.string(), machine, errors);
   }
   root.text_or("covariance", "");
+  if (contents.covariance.size() == 0) {
+    contents.covariance = covariance_with_thermometers(machine, errors, expansions, first_expansion);
+  }
   root.finish();
   return contents;
 }

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "abbe/errors/error_states.h"
+#include "abbe/errors/random_stream.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/machine/state_option.h"
@@ -101,6 +103,83 @@ TEST(ExpansionsInErrorsFiles, AreTakenAtAStateWithTheirUncertainty) {
   double variance = 0;
   for (const ErrorMotion& motion : warm.errors.motions) variance += std::pow(0.5 * motion.standard_uncertainty[1], 2);
   EXPECT_NEAR(1e3 * std::sqrt(variance), 0.5 * std::sqrt(9 + 69.14 * 0.04), 1e-9);
+}
+
+const std::string kSharedThermometer = R"([[expansion]]
+axis = "X"
+state = "scale_x"
+coefficient_um_per_m_K = 8
+coefficient_standard_uncertainty_um_per_m_K = 0.5
+temperature_standard_uncertainty_K = 0.1
+thermometer = "A"
+thermometer_standard_uncertainty_K = 0.2
+[[expansion]]
+axis = "Z"
+state = "scale_x"
+coefficient_um_per_m_K = 11
+temperature_standard_uncertainty_K = 0.15
+thermometer = "A"
+thermometer_standard_uncertainty_K = 0.3
+[[location]]
+name = "EB0Z"
+value_urad = 5
+standard_uncertainty_urad = 2
+)";
+
+TEST(ExpansionsInErrorsFiles, OfOneThermometerShareItsError) {
+  const ErrorsFile file = saw_errors(kSharedThermometer);
+  const Machine saw = saw_with_scales();
+  const std::vector<std::string> names = parameter_names(saw, file.errors);
+  const auto index = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) - names.begin();
+  };
+  const Eigen::Index x = index("EXX[s^1]"), z = index("EZZ[s^1]"), location = index("EB0Z");
+  ASSERT_EQ(file.covariance.rows(), static_cast<Eigen::Index>(names.size()));
+  // Independent: what thermometers and coefficients that are wrong do over one metre, um; X' moves in -X.
+  RandomStream random(6);
+  constexpr int kDraws = 200000;
+  double xx = 0, zz = 0, xz = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const double shared = random.normal();
+    const double of_x = -(8 + 0.5 * random.normal()) * (0.1 * random.normal() + 0.2 * shared);
+    const double of_z = 11 * (0.15 * random.normal() + 0.3 * shared);
+    xx += of_x * of_x / kDraws;
+    zz += of_z * of_z / kDraws;
+    xz += of_x * of_z / kDraws;
+  }
+  EXPECT_NEAR(1e6 * file.covariance(x, x) / xx, 1, 0.02);
+  EXPECT_NEAR(1e6 * file.covariance(z, z) / zz, 1, 0.02);
+  EXPECT_NEAR(1e6 * file.covariance(x, z) / xz, 1, 0.02);
+  EXPECT_NEAR(1e6 * file.covariance(x, z), -8 * 0.2 * 11 * 0.3, 1e-12);
+  EXPECT_EQ(file.covariance(z, x), file.covariance(x, z));
+  EXPECT_NEAR(file.covariance(location, location), 4e-12, 1e-24);
+  EXPECT_EQ((file.covariance.array() != 0).count(), 6) << "four terms and two that they share";
+}
+
+TEST(ExpansionsInErrorsFiles, TheirCovarianceGoesIntoThatAtAState) {
+  const Machine saw = saw_with_scales();
+  const ErrorsFile warm =
+      at_given_states(saw, saw_errors(kSharedThermometer), std::vector<double>{26, std::nan("")}, "saw.errors.toml");
+  // Both axes at 1 m: the point moves by the sum of both along (1, 1) in X and Z, each variance as at 26 degC.
+  double sum = 0;
+  for (Eigen::Index i = 0; i < warm.covariance.rows(); ++i) {
+    for (Eigen::Index j = 0; j < warm.covariance.cols(); ++j) {
+      if (i != warm.covariance.rows() - 4 && j != warm.covariance.rows() - 4) sum += warm.covariance(i, j);
+    }
+  }
+  const double of_x = 0.25 * 36 + 64.25 * (0.01 + 0.04), of_z = 121 * (0.0225 + 0.09);
+  EXPECT_NEAR(1e6 * sum, of_x + of_z - 2 * 8 * 0.2 * 11 * 0.3, 1e-9);
+}
+
+TEST(ExpansionsInErrorsFiles, WithOneScaleOfAThermometerNothingIsShared) {
+  std::string other = kSharedThermometer;
+  other.replace(other.rfind("\"A\""), 3, "\"B\"");
+  EXPECT_EQ(saw_errors(other).covariance.size(), 0);
+  EXPECT_THAT(expansion_refusal("axis = \"X\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = 8\nthermometer = \"A\"\n"),
+              HasSubstr("thermometer_standard_uncertainty_K: is missing or zero beside the thermometer"));
+  EXPECT_THAT(expansion_refusal("axis = \"X\"\nstate = \"scale_x\"\ncoefficient_um_per_m_K = "
+                                "8\nthermometer_standard_uncertainty_K = 0.1\n"),
+              HasSubstr("expansion[1].thermometer: is missing beside its uncertainty"));
 }
 
 TEST(ExpansionsInErrorsFiles, WhatIsWrongIsNamed) {

@@ -64,6 +64,30 @@ TEST(WorkpieceOption, TakesTheTemperatureFromAnOptionOrAColumn) {
   EXPECT_EQ(workpiece_factor(mill_with_part(), *found, poses, 1), 6);
 }
 
+TEST(WorkpieceOption, AStatedTemperatureNeedsNoState) {
+  PoseList poses = two_poses();
+  WorkpieceOptions options;
+  options.expansion = 23.4;
+  options.temperature = 26;
+  const auto of_poses = workpiece_option(mill_with_part(), options, {}, poses);
+  ASSERT_TRUE(of_poses);
+  EXPECT_TRUE(poses.state.empty());
+  EXPECT_EQ(workpiece_factor(mill_with_part(), *of_poses, poses, 1), 6);
+  EXPECT_EQ(workpiece_option(mill_with_part(), options, {})->temperature, 26.0);
+  EXPECT_EQ(workpiece_option(mill_with_part(), of_steel(), {"hall_degC=21", "part_degC=25"})->temperature, 25.0);
+  EXPECT_FALSE(workpiece_option(mill_with_part(), {}, {"part_degC=25"}));
+  EXPECT_EQ(message_of([] { workpiece_option(mill_with_part(), of_steel(), {"hall_degC=21"}); }),
+            "part_degC: the temperature of the workpiece is not given; expected --state part_degC=VALUE, or "
+            "--workpiece-temperature-degC instead of --workpiece-state");
+  options.state = "part";
+  EXPECT_THAT(message_of([&] { workpiece_option(mill_with_part(), options, {}); }),
+              HasSubstr("--workpiece-temperature-degC: is given together with --workpiece-state"));
+  options.state.clear();
+  options.temperature = -300;
+  EXPECT_THAT(message_of([&] { workpiece_option(mill_with_part(), options, {}); }),
+              HasSubstr("--workpiece-temperature-degC: out of range; expected -273.15 to 1000 degC"));
+}
+
 TEST(WorkpieceOption, WhatIsWrongIsNamed) {
   WorkpieceOptions options;
   options.state = "part";

@@ -55,6 +55,10 @@ void read_identified_expansions(TomlTable& identify, const Machine& machine, con
     table.finish();
     expansion.coefficient = coefficient.value;
     expansion.standard_uncertainty = coefficient.standard_uncertainty;
+    if (!expansion.thermometer.empty() && !(expansion.temperature_uncertainty > 0)) {
+      table.fail("temperature_standard_uncertainty_K", "is missing or zero beside a thermometer",
+                 "what the temperature of this scale is wrong by besides what its thermometer shares");
+    }
     if (expansion.temperature_uncertainty > 0 && coefficient.knowledge == Knowledge::open) {
       table.fail_quantity("temperature_standard_uncertainty", Quantity::temperature_difference,
                           "has an effect of unknown size where the coefficient is not known",
@@ -65,7 +69,8 @@ void read_identified_expansions(TomlTable& identify, const Machine& machine, con
       const bool is_temperature = term.state == kNoState;
       motion.expansion = {is_temperature ? SetupNumber::within(0, term.standard_uncertainty[1])
                                          : scaled(coefficient, expansion_scale(machine, term)),
-                          is_temperature};
+                          is_temperature, is_temperature ? expansion.thermometer : "",
+                          is_temperature ? thermometer_effect(machine, expansion) : 0};
       refuse_same_parameters(table, machine, motion, plan);
       plan.motions.push_back(std::move(motion));
     }

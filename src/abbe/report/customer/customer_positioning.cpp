@@ -136,6 +136,10 @@ CustomerReport customer_positioning(const ReportFacts& facts, bool rotary, const
   };
   if (before != nullptr) add_state(*before, in.word(Word::before));
   add_state(now, before != nullptr ? in.word(Word::after) : "");
+  // What the readings lack is among the conditions already; behind it come the notes of a correction.
+  const std::vector<std::string>& notes = now.report.notes;
+  const std::size_t shortfalls = positioning_shortfalls(now.evaluation, rotary).size();
+  report.notes.insert(report.notes.end(), notes.begin() + static_cast<std::ptrdiff_t>(shortfalls), notes.end());
   return report;
 }
 

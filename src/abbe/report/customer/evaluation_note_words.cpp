@@ -5,6 +5,23 @@ namespace abbe {
 namespace {
 
 constexpr NoteWord kEvaluationNotes[] = {
+    // Corrections to 20 degrees Celsius.
+    {"The deviations are corrected to 20 °C for the nominal differential expansion of machine and instrument (ISO "
+     "230-2).",
+     {"Die Abweichungen sind um die nominelle Differenzausdehnung von Maschine und Messgerät auf 20 °C korrigiert (ISO "
+      "230-2).",
+      "偏差已按机床与测量仪器的标称热膨胀差修正到 20 °C（ISO 230-2）。",
+      "偏差は、機械と測定器の公称熱膨張差について 20 °C に補正してあります（ISO 230-2）。"}},
+    {"The radii are corrected to 20 °C for the nominal differential expansion of machine and instrument (ISO 230-4).",
+     {"Die Radien sind um die nominelle Differenzausdehnung von Maschine und Messgerät auf 20 °C korrigiert (ISO "
+      "230-4).",
+      "半径已按机床与测量仪器的标称热膨胀差修正到 20 °C（ISO 230-4）。",
+      "半径は、機械と測定器の公称熱膨張差について 20 °C に補正してあります（ISO 230-4）。"}},
+    {"No uncertainty of coefficients and temperatures was stated: the correction to 20 °C counts as exact.",
+     {"Es sind keine Unsicherheiten der Ausdehnungskoeffizienten und Temperaturen angegeben: Die Korrektur auf 20 °C "
+      "gilt als genau.",
+      "未给出膨胀系数和温度的不确定度：到 20 °C 的修正视为准确。",
+      "膨張係数及び温度の不確かさの記載がありません：20 °C への補正は正確とみなします。"}},
     // Circular tests.
     {"Some causes make the same pattern on these readings and are not told apart: both directions of a full circle "
      "show squareness and servo mismatch apart, a full circle shows scales and centre apart.",

@@ -9,6 +9,7 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/report/drawings/svg_polar_plot.h"
 #include "abbe/report/drawings/thinned.h"
+#include "abbe/report/evaluations/expansion_report.h"
 
 namespace abbe {
 namespace {
@@ -258,10 +259,40 @@ EvaluationPlot diagnosis_plot(const CircularRequest& request, const std::array<C
           plot.picture()};
 }
 
+/// Called while the figures are those of the deviations.
+void add_circular_correction(const CircularRequest& request, const CircularCorrection& correction,
+                             EvaluationReport& report) {
+  add_expansion(correction.expansion, {correction.has_machine, correction.has_instrument}, correction.at, correction.at,
+                report);
+  report.notes.emplace_back(
+      "The radii are corrected to 20 \xC2\xB0\x43 for the nominal differential expansion of machine and instrument "
+      "(ISO "
+      "230-4).");
+  note_exact_expansion(correction.expansion, report);
+  EvaluationReport as_read;
+  add_deviations(request, correction.as_read, as_read);
+  EvaluationTable table{"Figures as read and corrected to 20 \xC2\xB0\x43, in \xC2\xB5m",
+                        {"figure", "as read", "at 20 \xC2\xB0\x43"},
+                        {}};
+  nlohmann::ordered_json json;
+  for (std::size_t f = 0; f < as_read.figures.size(); ++f) {
+    const EvaluationFigure &before = as_read.figures[f], &after = report.figures[f];
+    if (!before.value || !after.value) continue;
+    table.rows.push_back({before.symbol, figure_text(before, *before.value), figure_text(after, *after.value)});
+    json[before.symbol + "_um"] = figure_number(before, *before.value);
+  }
+  report.tables.push_back(std::move(table));
+  report.details["expansion"]["correction_of_nominal_radius_um"] =
+      std::round(request.circular.nominal_radius * (correction.factor - 1) * 1e12) / 1e9;
+  report.details["expansion"]["standard_uncertainty_um"] = std::round(correction.uncertainty * 1e12) / 1e9;
+  report.details["as_read"] = std::move(json);
+}
+
 }  // namespace
 
 EvaluationReport circular_report(const CircularRequest& request, const std::array<CircularReadings, 2>& paths,
-                                 const CircularResult& result, const CircularDiagnosis& diagnosis) {
+                                 const CircularResult& result, const CircularDiagnosis& diagnosis,
+                                 const CircularCorrection* correction) {
   EvaluationReport report;
   report.kind = "circular";
   report.title = "Circular test of " + std::filesystem::path(request.file).filename().string();
@@ -281,6 +312,7 @@ EvaluationReport circular_report(const CircularRequest& request, const std::arra
                                                 {"full_circle", !path.partial}};
   }
   add_deviations(request, result, report);
+  if (correction != nullptr) add_circular_correction(request, *correction, report);
   add_causes(request, diagnosis, report);
   add_notes(request, result, report);
   const bool any_path = result.paths[0].status == CircleStatus::done || result.paths[1].status == CircleStatus::done;

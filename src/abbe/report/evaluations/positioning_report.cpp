@@ -9,6 +9,7 @@
 
 #include "abbe/geometry/angle_units.h"
 #include "abbe/report/drawings/positioning_plot.h"
+#include "abbe/report/evaluations/positioning_correction_report.h"
 
 namespace abbe {
 namespace {
@@ -22,26 +23,31 @@ double rounded_position(double value, bool rotary) {
   return std::round(value * (rotary ? 1 / kDegree : 1) * 1e9) / 1e9;
 }
 
-std::vector<EvaluationFigure> figures(const PositioningEvaluation& e, bool rotary, const PositioningUncertainty* u) {
+std::vector<EvaluationFigure> figures(const PositioningEvaluation& e, bool rotary, const PositioningUncertainty* u,
+                                      const PositioningCorrection* correction = nullptr) {
   std::vector<EvaluationFigure> all;
-  const auto add = [&](const char* symbol, const char* name, const EvaluatedFigure& figure, double uncertainty) {
-    all.push_back(report_figure(symbol, name, figure, rotary));
-    if (u != nullptr && figure.is_evaluated()) all.back().uncertainty = uncertainty;
-  };
   const PositioningUncertainty none;
   const PositioningUncertainty& v = u != nullptr ? *u : none;
-  add("A", "bidirectional accuracy", e.accuracy.figure, v.accuracy);
-  add("A+", "unidirectional accuracy, positive approach", e.unidirectional_accuracy[0].figure, v.accuracy);
-  add("A-", "unidirectional accuracy, negative approach", e.unidirectional_accuracy[1].figure, v.accuracy);
-  add("E", "bidirectional systematic deviation", e.systematic.figure, v.systematic);
-  add("E+", "systematic deviation, positive approach", e.unidirectional_systematic[0].figure, v.systematic);
-  add("E-", "systematic deviation, negative approach", e.unidirectional_systematic[1].figure, v.systematic);
-  add("M", "range of the mean bidirectional deviation", e.mean_bidirectional.figure, v.mean_bidirectional);
-  add("R", "bidirectional repeatability", e.repeatability.figure, v.repeatability);
-  add("R+", "repeatability, positive approach", e.unidirectional_repeatability[0], v.unidirectional_repeatability);
-  add("R-", "repeatability, negative approach", e.unidirectional_repeatability[1], v.unidirectional_repeatability);
-  add("B", "reversal, largest", e.reversal, v.reversal);
-  add("B_mean", "reversal, mean", e.mean_reversal, v.reversal);
+  const bool stated = u != nullptr || (correction != nullptr && correction->expansion.has_uncertainty());
+  const auto values = positioning_figures(e);
+  const auto add = [&](const char* symbol, const char* name, double uncertainty) {
+    const std::size_t f = all.size();
+    all.push_back(report_figure(symbol, name, values[f], rotary));
+    if (!stated || !values[f].is_evaluated()) return;
+    all.back().uncertainty = correction == nullptr ? uncertainty : std::hypot(uncertainty, correction->expanded[f]);
+  };
+  add("A", "bidirectional accuracy", v.accuracy);
+  add("A+", "unidirectional accuracy, positive approach", v.accuracy);
+  add("A-", "unidirectional accuracy, negative approach", v.accuracy);
+  add("E", "bidirectional systematic deviation", v.systematic);
+  add("E+", "systematic deviation, positive approach", v.systematic);
+  add("E-", "systematic deviation, negative approach", v.systematic);
+  add("M", "range of the mean bidirectional deviation", v.mean_bidirectional);
+  add("R", "bidirectional repeatability", v.repeatability);
+  add("R+", "repeatability, positive approach", v.unidirectional_repeatability);
+  add("R-", "repeatability, negative approach", v.unidirectional_repeatability);
+  add("B", "reversal, largest", v.reversal);
+  add("B_mean", "reversal, mean", v.reversal);
   return all;
 }
 
@@ -166,8 +172,33 @@ nlohmann::ordered_json targets_json(const PositioningEvaluation& evaluation, boo
   return all;
 }
 
+namespace {
+
+void add_contributions(const PositioningUncertainty* uncertainty, const PositioningCorrection* correction, bool rotary,
+                       EvaluationReport& report) {
+  const bool of_correction = correction != nullptr && !correction->contributions.empty();
+  if (uncertainty == nullptr && !of_correction) return;
+  const std::string unit = rotary ? "arcsec" : "um";
+  EvaluationTable table{"Contributions to the measurement uncertainty, expanded (k = 2)", {"contribution", unit}, {}};
+  nlohmann::ordered_json contributions = nlohmann::ordered_json::array();
+  const auto add = [&](const std::vector<PositioningUncertainty::Contribution>& all) {
+    for (const auto& contribution : all) {
+      const double shown = shown_deviation(contribution.expanded, rotary);
+      table.rows.push_back({contribution.name, fmt::format("{:.2f}", shown)});
+      contributions.push_back({{"name", contribution.name}, {"expanded_uncertainty_" + unit, shown}});
+    }
+  };
+  if (uncertainty != nullptr) add(uncertainty->contributions);
+  if (of_correction) add(correction->contributions);
+  report.tables.push_back(std::move(table));
+  report.details["uncertainty_contributions"] = std::move(contributions);
+}
+
+}  // namespace
+
 EvaluationReport positioning_report(const PositioningEvaluation& evaluation, bool rotary, const std::string& file,
-                                    const PositioningUncertainty* uncertainty) {
+                                    const PositioningUncertainty* uncertainty,
+                                    const PositioningCorrection* correction) {
   EvaluationReport report;
   report.kind = "positioning";
   report.title = "Positioning: " + std::filesystem::path(file).filename().string();
@@ -181,22 +212,13 @@ EvaluationReport positioning_report(const PositioningEvaluation& evaluation, boo
       {"runs from one side", evaluation.fewest_runs == evaluation.most_runs
                                  ? std::to_string(evaluation.most_runs)
                                  : fmt::format("{} to {}", evaluation.fewest_runs, evaluation.most_runs)}};
-  report.figures = figures(evaluation, rotary, uncertainty);
+  report.figures = figures(evaluation, rotary, uncertainty, correction);
   report.notes = positioning_notes(evaluation, rotary);
   report.tables.push_back(targets_table(evaluation, rotary));
   report.plots.push_back({"plot", "", positioning_plot(evaluation, rotary, report.title)});
   report.details["targets"] = targets_json(evaluation, rotary);
-  if (uncertainty == nullptr) return report;
-  const std::string unit = rotary ? "arcsec" : "um";
-  EvaluationTable table{"Contributions to the measurement uncertainty, expanded (k = 2)", {"contribution", unit}, {}};
-  nlohmann::ordered_json contributions = nlohmann::ordered_json::array();
-  for (const auto& contribution : uncertainty->contributions) {
-    const double shown = shown_deviation(contribution.expanded, rotary);
-    table.rows.push_back({contribution.name, fmt::format("{:.2f}", shown)});
-    contributions.push_back({{"name", contribution.name}, {"expanded_uncertainty_" + unit, shown}});
-  }
-  report.tables.push_back(std::move(table));
-  report.details["uncertainty_contributions"] = std::move(contributions);
+  if (correction != nullptr) add_correction(*correction, evaluation, report);
+  add_contributions(uncertainty, correction, rotary, report);
   return report;
 }
 

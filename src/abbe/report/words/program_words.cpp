@@ -9,6 +9,7 @@
 #include "abbe/report/evaluations/position_json.h"
 #include "abbe/report/words/left_out_words.h"
 #include "abbe/report/words/state_words.h"
+#include "abbe/report/words/workpiece_words.h"
 
 namespace abbe {
 namespace {
@@ -204,7 +205,7 @@ std::string program_text(const ProgramWordsRequest& request, const Machine& mach
   const ProgramReport& report = result.report;
   text += fmt::format("{} moves of {} on {}: {} pieces, {} split; path within {:g} um between them\n", report.moves,
                       request.program, machine.name, report.pieces, report.split_moves, request.tolerance_um);
-  text += state_line(result.at_state);
+  text += state_line(result.at_state) + workpiece_line(result.workpiece);
   const ProgramPlace& shift = report.largest_shift;
   if (shift.line != 0) {
     text += fmt::format("largest correction of the functional point {:.3f} um", 1e3 * shift.value);
@@ -285,6 +286,7 @@ nlohmann::ordered_json program_json(const ProgramWordsRequest& request, const Ma
   json["program"] = request.program;
   json["machine"] = machine.name;
   add_state(result.at_state, json);
+  add_workpiece(result.workpiece, json);
   json["written"] = result.refused.empty() && !request.dry_run;
   json["refused"] = result.refused;
   json["lines"] = result.text.lines;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "abbe/formats/files/file_name.h"
@@ -14,7 +16,9 @@
 #include "abbe/report/evaluations/positioning_report.h"
 #include "abbe/report/evaluations/rotation_report.h"
 #include "abbe/report/evaluations/straightness_report.h"
+#include "abbe/study/evaluations/circular_correction.h"
 #include "abbe/study/evaluations/evaluated.h"
+#include "abbe/study/evaluations/positioning_correction.h"
 
 namespace abbe {
 namespace {
@@ -90,11 +94,15 @@ Evaluation evaluated(const PositioningTest& test, const std::string& file) {
   require_readings(!test.readings.readings.empty(), file);
   const PositioningUncertaintyInput& input = stated_uncertainty(test);
   const bool rotary = test.readings.rotary;
-  const PositioningEvaluation evaluation = evaluate_positioning(test.readings.readings);
-  const PositioningUncertainty uncertainty = positioning_uncertainty(input, evaluation, rotary);
+  const std::optional<CorrectedPositioning> corrected = corrected_positioning(test, file);
+  const PositioningEvaluation evaluation =
+      evaluate_positioning(corrected ? corrected->readings : test.readings.readings);
+  const PositioningUncertaintyInput known = corrected ? without_expansion(input) : input;
+  const PositioningUncertainty uncertainty = positioning_uncertainty(known, evaluation, rotary);
   Evaluation result;
   result.found = evaluation;
-  result.report = positioning_report(evaluation, rotary, file, input.is_empty() ? nullptr : &uncertainty);
+  result.report = positioning_report(evaluation, rotary, file, known.is_empty() ? nullptr : &uncertainty,
+                                     corrected ? &corrected->correction : nullptr);
   return result;
 }
 
@@ -109,8 +117,7 @@ Evaluation evaluated(const DiagonalsTest& test, const std::string& file) {
 }
 
 Evaluation evaluated(const CircularTest& test, const std::string& file) {
-  const auto& paths = test.readings.paths;
-  require_readings(paths[0].count() + paths[1].count() > 0, file);
+  require_readings(test.readings.paths[0].count() + test.readings.paths[1].count() > 0, file);
   if (!(test.nominal_radius > 0)) {
     throw InputError({.field = "--radius-mm"}, fmt::format("{:g} is not valid", test.nominal_radius),
                      "a length in mm above zero");
@@ -121,9 +128,17 @@ Evaluation evaluated(const CircularTest& test, const std::string& file) {
   request.circular = {test.nominal_radius, test.centre, test.reading_uncertainty, test.length_uncertainty};
   request.diagnosis = {test.nominal_radius, test.length_calibrated, test.length_uncertainty, test.reversal_margin};
   request.feed_mm_s = test.feed;
+  std::optional<CorrectedCircle> corrected = corrected_circle(test);
+  if (corrected) {
+    corrected->correction.as_read = circular_deviations(test.readings.paths, request.circular);
+    double& of_length = request.circular.length_uncertainty;
+    request.diagnosis.length_uncertainty = of_length = std::hypot(of_length, corrected->correction.uncertainty);
+  }
+  const auto& paths = corrected ? corrected->paths : test.readings.paths;
   CircularEvaluation found{circular_deviations(paths, request.circular), circular_diagnosis(paths, request.diagnosis)};
   Evaluation result;
-  result.report = circular_report(request, paths, found.deviations, found.diagnosis);
+  result.report =
+      circular_report(request, paths, found.deviations, found.diagnosis, corrected ? &corrected->correction : nullptr);
   result.found = std::move(found);
   for (const EvaluationFigure& figure : result.report.figures) {
     if (figure.value || !figure.symbol.starts_with("G_")) continue;
