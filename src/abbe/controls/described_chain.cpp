@@ -9,6 +9,7 @@
 
 #include "abbe/errors/calibrated_machine.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 
@@ -16,6 +17,7 @@ namespace abbe {
 namespace {
 
 constexpr double kAlongLetter = 1e-9;
+constexpr double kLeastTurn = 0.01 - kTurn / 2;
 
 [[noreturn]] void refuse_description(const std::string& format, const std::string& why, const std::string& expected) {
   throw InputError({.field = "--for " + format}, why, expected);
@@ -48,30 +50,6 @@ void check_described(const Machine& machine, const std::string& format) {
   }
 }
 
-/// The two turns, in the order of the rows, that take the unit vector of a coordinate to a direction. The turn about
-/// the axis itself would come last and change nothing. Manual, page 684: B0X, C0X in front of X.
-void set_tilt(const Eigen::Vector3d& to, DescribedAxis& described) {
-  const double x = to.x(), y = to.y(), z = to.z();
-  const auto turn = [](double sine) { return std::asin(std::clamp(sine, -1.0, 1.0)); };
-  const auto set = [&](std::size_t first, double by_first, std::size_t second, double by_second) {
-    described.tilt_coordinate[0] = first;
-    described.tilt_coordinate[1] = second;
-    described.tilt[0] = by_first;
-    described.tilt[1] = by_second;
-  };
-  switch (described.coordinate % 3) {
-    case 0:
-      set(4, std::atan2(-z, x), 5, turn(y));
-      break;  // Ry Rz x = (cos b cos c, sin c, -sin b cos c)
-    case 1:
-      set(3, std::atan2(z, y), 5, turn(-x));
-      break;  // Rx Rz y = (-sin c, cos a cos c, sin a cos c)
-    default:
-      set(3, std::atan2(-y, z), 4, turn(x));
-      break;  // Rx Ry z = (sin b, -sin a cos b, cos a cos b)
-  }
-}
-
 /// p by Trans(-v) or Rot(-v): the coordinates of a point when the frame moves by v.
 void move_frame(std::size_t coordinate, double v, Eigen::Vector3d& point) {
   const auto a = static_cast<Eigen::Index>(coordinate % 3);
@@ -96,6 +74,33 @@ void turn_frame(std::size_t coordinate, double v, Eigen::Matrix3Xd& directions, 
 
 }  // namespace
 
+void tilt_to(const Eigen::Vector3d& to, DescribedAxis& described) {
+  const double x = to.x(), y = to.y(), z = to.z();
+  const auto turn = [](double sine) { return std::asin(std::clamp(sine, -1.0, 1.0)); };
+  // Half a turn, of an axis that turns the other way, is the same number with errors on either side of it.
+  const auto first_turn = [](double sine, double cosine) {
+    const double angle = std::atan2(sine, cosine);
+    return angle < kLeastTurn ? angle + kTurn : angle;
+  };
+  const auto set = [&](std::size_t first, double by_first, std::size_t second, double by_second) {
+    described.tilt_coordinate[0] = first;
+    described.tilt_coordinate[1] = second;
+    described.tilt[0] = by_first;
+    described.tilt[1] = by_second;
+  };
+  switch (described.coordinate % 3) {
+    case 0:
+      set(4, first_turn(-z, x), 5, turn(y));
+      break;  // Ry Rz x = (cos b cos c, sin c, -sin b cos c)
+    case 1:
+      set(3, first_turn(z, y), 5, turn(-x));
+      break;  // Rx Rz y = (-sin c, cos a cos c, sin a cos c)
+    default:
+      set(3, first_turn(-y, z), 4, turn(x));
+      break;  // Rx Ry z = (sin b, -sin a cos b, cos a cos b)
+  }
+}
+
 double described_sense(const Axis& axis) { return axis.side == ChainSide::tool ? axis.sense() : -axis.sense(); }
 
 Eigen::Matrix3d DescribedAxis::tilted() const {
@@ -114,7 +119,7 @@ std::vector<DescribedAxis> described_axes(const Machine& machine, const ErrorSet
     described.letter = axis.name.front();
     described.coordinate = kinematics_coordinate(described.letter);
     described.letter_direction = unit_of(described.coordinate);
-    set_tilt(described_sense(axis) * axis.direction, described);
+    tilt_to(described_sense(axis) * axis.direction, described);
     if (axis.kind == AxisKind::rotary) {
       described.shift = axis.point - origin;
       origin = axis.point;

@@ -30,6 +30,10 @@ struct DescribedAxis {
   Eigen::Matrix3d tilted() const;
 };
 
+/// Sets the two turns, in the order of the rows, that take the unit vector of `described.coordinate` to a direction.
+/// The turn about the axis itself would come last and change nothing. Manual, page 684: B0X, C0X in front of X.
+void tilt_to(const Eigen::Vector3d& to, DescribedAxis& described);
+
 /// All axes in the order of the description, with the location errors of the rotary ones in `origin` and of all in
 /// `tilt`.
 /// @param format  for messages: "heidenhain"

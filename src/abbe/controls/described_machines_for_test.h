@@ -31,6 +31,15 @@ inline Machine nutating_machine() {
   return machine;
 }
 
+/// A table that turns in its own positive sense, and a tilt of half a turn with it.
+inline Machine unprimed_machine() {
+  Machine machine = machine_of_the_manual();
+  Axis& table = machine.axes[machine.find_axis("C")];
+  table.primed = false;
+  table.endless = true;
+  return machine;
+}
+
 inline Machine trunnion_machine() {
   return read_machine(std::string(ABBE_SOURCE_DIR) + "/examples/machines/trunnion-mill.machine.toml");
 }
@@ -40,7 +49,10 @@ struct DescribedCase {
   std::function<Machine()> machine;
 };
 inline std::vector<DescribedCase> described_cases() {
-  return {{"trunnion", trunnion_machine}, {"manual", machine_of_the_manual}, {"nutating", nutating_machine}};
+  return {{"trunnion", trunnion_machine},
+          {"manual", machine_of_the_manual},
+          {"nutating", nutating_machine},
+          {"unprimed", unprimed_machine}};
 }
 
 /// Range of commands in mm or rad: of an endless axis a turn.

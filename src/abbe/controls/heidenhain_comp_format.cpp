@@ -113,7 +113,7 @@ class CompTables {
 };
 
 /// The set of files read back, as the control has it.
-std::vector<ComponentTable> written_tables(const Machine& machine, const WriterRequest& request,
+std::vector<ComponentTable> written_tables(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
                                            const std::vector<ComponentTable>& tables, WrittenTables& made) {
   const double sign = request.negate ? -1 : 1, own_sign = request.negate_own ? 1 : -1;
   std::vector<ComponentTable> read;
@@ -123,7 +123,7 @@ std::vector<ComponentTable> written_tables(const Machine& machine, const WriterR
     const std::string text = heidenhain_component_text(table, name, request.names, own_sign, sign);
     ComponentTable again = parse_heidenhain_component(text, name, table.axis, request.names, own_sign, sign);
     // A rotary axis has entries from 0 to 360 degrees, and repeats itself.
-    const bool modulo = machine.axes[table.axis].endless;
+    const bool modulo = machine.axes[table.axis].endless && known_travel(machine, errors, table.axis).whole_turn;
     if (again.own) again.own->modulo = modulo;
     for (std::optional<AxisTable>& column : again.columns) {
       if (column) column->modulo = modulo;
@@ -172,7 +172,7 @@ WrittenTables make_kinematics_comp(const Machine& machine, const ErrorSet& error
     const double sign = request.negate ? -1 : 1;
     const std::string text = heidenhain_kinematics_text(rows, kDescriptionFile, request.names, sign);
     rows = parse_heidenhain_kinematics(text, kDescriptionFile, request.names, sign);
-    if (!tables.empty()) tables = written_tables(machine, request, tables, made);
+    if (!tables.empty()) tables = written_tables(machine, written, request, tables, made);
     made.files.push_back({kDescriptionFile, text});
   }
   made.correction = std::make_unique<DescribedCorrection>(machine, rows, std::move(tables));

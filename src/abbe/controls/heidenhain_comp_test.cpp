@@ -85,17 +85,17 @@ TEST(HeidenhainComp, SignsOfColumnsAndOwnColumnsTurnByThemselves) {
   ASSERT_EQ(request.errors.motions.back().axis, x);
   const std::string plain = text_of(make_control_tables(request), "X.COM");
   EXPECT_THAT(plain, HasSubstr("NR AXISPOS 1 C2 C5\n"));
-  EXPECT_THAT(plain, HasSubstr("1 100.000000 0.004000 -0.004000 -0.0005730\n"));
+  EXPECT_THAT(plain, HasSubstr("1 100.000000 0.004000 -0.004000 -0.0005729\n"));
   request.negate = true;
   const ControlTables turned = make_control_tables(request);
-  EXPECT_THAT(text_of(turned, "X.COM"), HasSubstr("1 100.000000 0.004000 0.004000 0.0005730\n"));
+  EXPECT_THAT(text_of(turned, "X.COM"), HasSubstr("1 100.000000 0.004000 0.004000 0.0005729\n"));
   EXPECT_THAT(text_of(turned, "KINEMATICS.TAB"), HasSubstr("Trans     C                         -0.0011459\n6"));
   EXPECT_LT(turned.after.position_statistics.maximum, 2e-5);
   request.negate_own = true;
-  EXPECT_THAT(text_of(make_control_tables(request), "X.COM"), HasSubstr("1 100.000000 -0.004000 0.004000 0.0005730\n"));
+  EXPECT_THAT(text_of(make_control_tables(request), "X.COM"), HasSubstr("1 100.000000 -0.004000 0.004000 0.0005729\n"));
   request.negate = false;
   EXPECT_THAT(text_of(make_control_tables(request), "X.COM"),
-              HasSubstr("1 100.000000 -0.004000 -0.004000 -0.0005730\n"));
+              HasSubstr("1 100.000000 -0.004000 -0.004000 -0.0005729\n"));
 }
 
 class HeidenhainCompCarries : public testing::TestWithParam<test::DescribedCase> {};

@@ -32,9 +32,14 @@ std::vector<DescribedAxis> rotary_described(const Machine& geometry) {
   return axes;
 }
 
-std::vector<PlainValue> rows_of_axes(const BelievedMachine&, const BelievedMachine& geometry, std::optional<int>) {
+std::vector<PlainValue> rows_of_axes(const BelievedMachine& nominal, const BelievedMachine& geometry,
+                                     std::optional<int>) {
+  Machine machine = geometry.machine;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    if (machine.axes[i].kind == AxisKind::linear) machine.axes[i].direction = nominal.machine.axes[i].direction;
+  }
   std::vector<PlainValue> values;
-  for (const DescribedAxis& axis : rotary_described(geometry.machine)) {
+  for (const DescribedAxis& axis : rotary_described(machine)) {
     add_vector(values, {shift_name(axis.letter, 0), shift_name(axis.letter, 1), shift_name(axis.letter, 2)},
                ValueKind::length, axis.shift);
     for (std::size_t turn = 0; turn < 2; ++turn) {
@@ -89,10 +94,12 @@ std::vector<std::string> line_names(char letter) {
   return names;
 }
 
-/// Lines of rotary axes in the frame of the tool reference point, whatever rows state them.
+/// Values by the names of rows_of_axes(), and lines of rotary axes in the frame of the tool reference point: whatever
+/// rows state them.
 NamedNumbers read_lines(const std::string& text) {
   NamedNumbers numbers;
   RigidTransform chain;
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
   for (const KinematicsRow& row : parse_heidenhain_kinematics(text, kValuesFile, {}, 1)) {
     const std::size_t coordinate = kinematics_coordinate(row.axis);
     if (row.key == KinematicsRow::Key::mach_base || (row.key == KinematicsRow::Key::mach_axis && coordinate < 3))
@@ -104,6 +111,14 @@ NamedNumbers read_lines(const std::string& text) {
       for (std::size_t c = 0; c < 3; ++c) {
         numbers[names[c]] = chain.translation[static_cast<Eigen::Index>(c)];
         numbers[names[c + 3]] = direction[static_cast<Eigen::Index>(c)];
+        numbers[shift_name(row.axis, c)] = (chain.translation - before)[static_cast<Eigen::Index>(c)];
+      }
+      before = chain.translation;
+      DescribedAxis axis;
+      axis.coordinate = coordinate;
+      tilt_to(direction, axis);
+      for (std::size_t turn = 0; turn < 2; ++turn) {
+        numbers[turn_name(row.axis, axis.tilt_coordinate[turn])] = axis.tilt[turn];
       }
     } else {
       const double value = row.coord.value_or(0);
