@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "abbe/compensate/point_correction.h"
@@ -77,9 +78,12 @@ class CompTables {
 
  private:
   bool is_angle(std::size_t f) const { return f == 0 ? rotary_ : f >= 4; }
+  /// Of the row along (about) the letter of the axis itself products of angles are left, which a tilted axis exceeds.
   bool is_shown(std::size_t f, const std::vector<double>& values) const {
-    const std::size_t coordinate = is_angle(f) ? 3 : 0;
-    return std::any_of(values.begin(), values.end(), [&](double value) { return shown_in_row(coordinate, value); });
+    const bool own_row = f > 0 && static_cast<Component>(f - 1) == own_component(axis_);
+    return std::any_of(values.begin(), values.end(), [&](double value) {
+      return own_row ? std::abs(value) > spacing_.tolerance[f] : shown_in_row(is_angle(f) ? 3 : 0, value);
+    });
   }
   std::string name_of(std::size_t f) const {
     const Component own = own_component(axis_);

@@ -142,6 +142,8 @@ TEST(HeidenhainComp, AnAxisThatIsNotWantedStaysAsItIsInTheMachineFile) {
   EXPECT_THAT(rows, HasSubstr("Y of A          Trans     Y     0.020000\n"));
   EXPECT_THAT(rows, Not(HasSubstr("EC0Y")));
   EXPECT_THAT(rows, HasSubstr("EB0C"));
+  // Of the turn about C itself only products of angles are left.
+  EXPECT_THAT(rows, Not(HasSubstr("A5C6")));
 }
 
 // Every axis fills five rows, two tilts and two inverse ones; no machine has more letters than nine.
