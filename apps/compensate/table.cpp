@@ -40,7 +40,7 @@ struct TableCommand {
   std::size_t first_table = 0, encoder = 0;
   double unit_um = 1;
   int type = 1;
-  bool json = false, dry_run = false, accept_misfit = false, negate = false;
+  bool json = false, dry_run = false, accept_misfit = false, negate = false, negate_own = false;
   std::set<TableSetting> given;
 
   std::string map_extension() const { return std::filesystem::path(map).extension().string(); }
@@ -96,6 +96,7 @@ void add_settings(const TableCommand& command, ControlTableRequest& request) {
   if (given(TableSetting::encoder)) request.encoder = command.encoder;
   if (given(TableSetting::first_table)) request.first_table = command.first_table;
   request.negate = command.negate;
+  request.negate_own = command.negate_own;
   if (given(TableSetting::detection_unit)) request.detection_unit_mm = 1e-3 * command.unit_um;
 }
 
@@ -200,8 +201,11 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_option("--first-table", options->first_table, "siemens-cec: index of the first table (default 0)");
   command->add_option("--encoder", options->encoder, "siemens-eec: measuring system, 0 or 1 (default 0)");
   command->add_flag("--negate", options->negate,
-                    "siemens-cec, heidenhain, fanuc-pitch, fanuc-3d, aerotech-1d, aerotech-2d: write values with the "
-                    "other sign (the sign of the control is not verified)");
+                    "siemens-cec, heidenhain, heidenhain-kinematics-comp, fanuc-pitch, fanuc-3d, aerotech-1d, "
+                    "aerotech-2d: write values with the other sign (the sign of the control is not verified)");
+  command->add_flag("--negate-own", options->negate_own,
+                    "heidenhain-kinematics-comp: the same of the columns of the axes themselves; --negate then turns "
+                    "C1 to C6 and COMPTAB");
   command->add_option(
       "--detection-unit-um", options->unit_um,
       "fanuc-pitch, fanuc-3d: unit of the data, um, or thousandths of a degree for rotary axes (default 1)");

@@ -77,7 +77,7 @@ def test_bad_arguments_are_named(format_, keywords, field):
 
 def test_formats_and_machines_that_a_control_does_not_have():
     formats = {one.name: one for one in abbe.kinematic_formats()}
-    assert list(formats) == ["values", "linuxcnc", "siemens", "fanuc"]
+    assert list(formats) == ["values", "linuxcnc", "siemens", "fanuc", "heidenhain"]
     assert formats["values"].unverified == "" and formats["siemens"].unverified and formats["fanuc"].cannot
     for name in formats:
         with pytest.raises(abbe.InputError):

@@ -45,7 +45,7 @@ ControlTables tables_of(const std::string& format, const ExampleMachine& of, con
 /// Without the location errors that the kinematic values of a format carry.
 ErrorSet without_carried(const ExampleMachine& of, const std::string& format) {
   std::vector<std::string> carried = {"EX0C", "EY0C", "EY0A", "EZ0A"};
-  if (format == "siemens") carried.insert(carried.end(), {"EA0C", "EB0C", "EB0A", "EC0A"});
+  if (format == "siemens" || format == "heidenhain") carried.insert(carried.end(), {"EA0C", "EB0C", "EB0A", "EC0A"});
   ErrorSet errors = of.errors.errors;
   std::erase_if(errors.locations, [&](const LocationError& location) {
     const std::string name = location_error_name(of.machine, location.axis, location.component);

@@ -27,7 +27,7 @@ struct TableArguments {
   double least_reduction_percent = 1, leave_out = 0;
   std::optional<int> type;
   std::optional<std::size_t> first_table, encoder;
-  bool negate = false;
+  bool negate = false, negate_own = false;
   std::optional<double> detection_unit_um;
   AxisPositions reference_position;
 };
@@ -42,6 +42,7 @@ std::set<TableSetting> given_settings(const TableArguments& given) {
   add(given.first_table.has_value(), TableSetting::first_table);
   add(given.encoder.has_value(), TableSetting::encoder);
   add(given.negate, TableSetting::negate);
+  add(given.negate_own, TableSetting::negate_own);
   add(given.detection_unit_um.has_value(), TableSetting::detection_unit);
   add(!given.reference_position.empty(), TableSetting::reference_position);
   add(!given.at.empty(), TableSetting::reference);
@@ -83,6 +84,7 @@ TableResult tables_of(const MachineErrors& errors, const std::string& format, co
   request.encoder = given.encoder;
   request.first_table = given.first_table;
   request.negate = given.negate;
+  request.negate_own = given.negate_own;
   request.detection_unit_mm = scaled(given.detection_unit_um, 1e-3);
   request.positions = given.positions;
   request.limit_mm = scaled(given.limit_um, 1e-3);
@@ -226,13 +228,13 @@ void bind_control_tables(nb::module_& module) {
          std::optional<double> interpolation_urad, std::optional<std::size_t> max_points,
          std::optional<std::size_t> positions, std::optional<double> limit_um, std::optional<double> limit_urad,
          double least_reduction_percent, double leave_out, std::optional<int> type,
-         std::optional<std::size_t> first_table, std::optional<std::size_t> encoder, bool negate,
+         std::optional<std::size_t> first_table, std::optional<std::size_t> encoder, bool negate, bool negate_own,
          std::optional<double> detection_unit_um, AxisPositions reference_position, bool accept_misfit,
          const std::string& errors_file) {
         return tables_of(errors, format,
                          {std::move(at), std::move(axes), std::move(names), interpolation_um, interpolation_urad,
                           max_points, positions, limit_um, limit_urad, least_reduction_percent, leave_out, type,
-                          first_table, encoder, negate, detection_unit_um, std::move(reference_position)},
+                          first_table, encoder, negate, negate_own, detection_unit_um, std::move(reference_position)},
                          accept_misfit, errors_file);
       },
       nb::arg("errors"), nb::arg("format"), nb::kw_only(), nb::arg("at") = AxisPositions{},
@@ -241,17 +243,18 @@ void bind_control_tables(nb::module_& module) {
       nb::arg("max_points") = nb::none(), nb::arg("positions") = nb::none(), nb::arg("limit_um") = nb::none(),
       nb::arg("limit_urad") = nb::none(), nb::arg("least_reduction_percent") = 1.0,
       nb::arg("leave_out_below_uncertainty") = 0.0, nb::arg("type") = nb::none(), nb::arg("first_table") = nb::none(),
-      nb::arg("encoder") = nb::none(), nb::arg("negate") = false, nb::arg("detection_unit_um") = nb::none(),
-      nb::arg("reference_position") = AxisPositions{}, nb::arg("accept_misfit") = false,
-      nb::arg("errors_file") = "errors.toml",
+      nb::arg("encoder") = nb::none(), nb::arg("negate") = false, nb::arg("negate_own") = false,
+      nb::arg("detection_unit_um") = nb::none(), nb::arg("reference_position") = AxisPositions{},
+      nb::arg("accept_misfit") = false, nb::arg("errors_file") = "errors.toml",
       "Correction tables for a control, read back and tried in a simulated control.\n\n"
       "format: a name of table_formats(), such as 'linuxcnc'. at: {'Z_mm': -100}, where an axis stands while another\n"
       "one moves. axes: only tables over their positions. names: {'X': 'X1'}, what the control calls an axis.\n"
       "interpolation_um, interpolation_urad: largest error of straight lines between nodes. max_points: room for\n"
       "nodes. positions: per axis of the grid where deviations are stated. limit_um, limit_urad: larger corrections\n"
       "are refused; least_reduction_percent: as are tables that remove less of the error. type (linuxcnc),\n"
-      "first_table (siemens-cec), encoder (siemens-eec), negate, detection_unit_um and reference_position (FANUC):\n"
-      "refused with other formats. Raises InputError. Formats and method: docs/controller-tables.md.\n\n"
+      "first_table (siemens-cec), encoder (siemens-eec), negate, negate_own (heidenhain-kinematics-comp),\n"
+      "detection_unit_um and reference_position (FANUC): refused with other formats. Raises InputError.\n"
+      "Formats and method: docs/controller-tables.md.\n\n"
       ">>> import abbe\n"
       ">>> mill = abbe.Machine.from_chain(\"w X' Y' b Z t\")\n"
       ">>> errors = abbe.Errors(mill)\n"

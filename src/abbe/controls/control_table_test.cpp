@@ -102,7 +102,7 @@ TEST_F(ControlTablesTest, ARequestThatTheControlCannotTakeIsRefusedWithTheOption
   EXPECT_THAT(refused("heidenhain-9", nothing), HasSubstr("--for: unknown format 'heidenhain-9'; expected linuxcnc, "));
   EXPECT_EQ(refused("linuxcnc", [](ControlTableRequest& request) { request.negate = true; }),
             "--negate: would change nothing in tables for linuxcnc; expected --for siemens-cec, heidenhain, "
-            "fanuc-pitch, fanuc-3d, aerotech-1d, aerotech-2d; or to leave it out");
+            "heidenhain-kinematics-comp, fanuc-pitch, fanuc-3d, aerotech-1d, aerotech-2d; or to leave it out");
   EXPECT_THAT(refused("siemens-cec", [](ControlTableRequest& request) { request.axes = {"Q"}; }),
               HasSubstr("--axis Q: the machine has no such axis"));
   EXPECT_THAT(refused("fanuc-3d",

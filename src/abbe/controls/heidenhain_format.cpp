@@ -10,17 +10,6 @@
 namespace abbe {
 namespace {
 
-/// One table of table names per line; the first is the active one.
-std::string heidenhain_assignment(const WriterRequest& request, const std::vector<std::size_t>& inputs) {
-  std::string columns = "NR ACTIVE", files = "0 *";
-  for (const std::size_t input : inputs) {
-    const std::string& name = table_axis(request.names, input).name;
-    columns += " " + name;
-    files += " " + name + ".COM";
-  }
-  return "BEGIN CONFIG.CMA MM\n" + columns + "\n" + files + "\n[END]\n";
-}
-
 WrittenTables make_heidenhain(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
                               const WriterRequest& request) {
   WrittenTables made;
@@ -28,6 +17,7 @@ WrittenTables make_heidenhain(const TableFormat& format, const Machine& machine,
   const double sign = request.negate ? 1 : -1;
   std::vector<AxisTable> read;
   std::vector<std::size_t> inputs;
+  std::vector<HeidenhainAssignment> assigned;
   for (const AxisTable& table : tables) {
     if (std::find(inputs.begin(), inputs.end(), table.input) == inputs.end()) inputs.push_back(table.input);
   }
@@ -39,13 +29,14 @@ WrittenTables make_heidenhain(const TableFormat& format, const Machine& machine,
     const std::string name = table_axis(request.names, input).name + ".COM";
     const std::string text = heidenhain_com_text(of_input, request.names, sign);
     made.files.push_back({name, text});
+    assigned.push_back({table_axis(request.names, input).name, name});
     for (AxisTable& table : parse_heidenhain_com(text, name, input, request.names, sign)) {
       // A rotary axis has entries from 0 to 360 degrees, and repeats itself.
       table.modulo = machine.axes[input].endless;
       read.push_back(std::move(table));
     }
   }
-  if (!inputs.empty()) made.files.push_back({"CONFIG.CMA", heidenhain_assignment(request, inputs)});
+  if (!inputs.empty()) made.files.push_back({"CONFIG.CMA", heidenhain_assignment_text(assigned)});
   made.correction = std::make_unique<AxisTableCorrection>(std::move(read));
   return made;
 }

@@ -9,7 +9,8 @@ namespace abbe {
 
 const std::vector<KinematicFormat>& all_kinematic_formats() {
   static const std::vector<KinematicFormat> formats = {general_kinematic_values(), linuxcnc_kinematic_values(),
-                                                       siemens_kinematic_values(), fanuc_kinematic_values()};
+                                                       siemens_kinematic_values(), fanuc_kinematic_values(),
+                                                       heidenhain_kinematic_values()};
   return formats;
 }
 

@@ -51,6 +51,7 @@ KinematicFormat general_kinematic_values();
 KinematicFormat linuxcnc_kinematic_values();
 KinematicFormat siemens_kinematic_values();
 KinematicFormat fanuc_kinematic_values();
+KinematicFormat heidenhain_kinematic_values();
 
 const std::vector<KinematicFormat>& all_kinematic_formats();
 

@@ -33,13 +33,6 @@ const KinematicFormat& kinematic_format(const std::string& name) {
     if (format.name == name) return format;
     names += (names.empty() ? "" : ", ") + format.name;
   }
-  if (name.starts_with("heidenhain")) {
-    throw InputError(
-        {.field = "--for"},
-        "the keys of HEIDENHAIN's kinematics (KinematicsOpt) are those of the machine maker, and no public "
-        "source has them (docs/kinematic-values.md, \"Left out\")",
-        "values, which has the same quantities; or " + names);
-  }
   throw InputError({.field = "--for"}, fmt::format("unknown format '{}'", name), names);
 }
 

@@ -335,17 +335,14 @@ TEST_F(KinematicValuesTest, MachinesAndRequestsThatAControlDoesNotHaveAreRefused
   request.tool_carrier = 0;
   EXPECT_THAT(refused(request), HasSubstr("--tool-carrier: out of range"));
   request = request_for("tnc", "trunnion-mill");
-  EXPECT_EQ(refused(request), "--for: unknown format 'tnc'; expected values, linuxcnc, siemens, fanuc");
-  EXPECT_THAT(
-      refused(request_for("heidenhain", "trunnion-mill")),
-      HasSubstr("no public source has them (docs/kinematic-values.md, \"Left out\"); expected values, which has"));
+  EXPECT_EQ(refused(request), "--for: unknown format 'tnc'; expected values, linuxcnc, siemens, fanuc, heidenhain");
   request = request_for("siemens", "trunnion-mill");
   request.limit_mm = 0;
   EXPECT_THAT(refused(request), HasSubstr("--limit-um: 0 is not a limit"));
 }
 
 TEST_F(KinematicValuesTest, AreTheSameInALocaleWithADecimalComma) {
-  for (const std::string format : {"values", "linuxcnc", "siemens", "fanuc"}) {
+  for (const std::string format : {"values", "linuxcnc", "siemens", "fanuc", "heidenhain"}) {
     KinematicValuesRequest request = request_for(format, "trunnion-mill");
     request.errors = errors_of_lines(request.machine, false);
     const KinematicValues expected = make_kinematic_values(request);

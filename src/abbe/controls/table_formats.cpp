@@ -16,6 +16,7 @@
   FORMAT(klipper_format)           \
   FORMAT(marlin_format)            \
   FORMAT(heidenhain_format)        \
+  FORMAT(heidenhain_comp_format)   \
   FORMAT(fanuc_pitch_format)       \
   FORMAT(fanuc_lattice_format)     \
   FORMAT(aerotech_1d_format)       \
@@ -54,6 +55,7 @@ constexpr std::array kSettingOptions = {
     SettingOption{TableSetting::first_table, "--first-table"},
     SettingOption{TableSetting::encoder, "--encoder"},
     SettingOption{TableSetting::negate, "--negate"},
+    SettingOption{TableSetting::negate_own, "--negate-own"},
     SettingOption{TableSetting::detection_unit, "--detection-unit-um"},
     SettingOption{TableSetting::reference_position, "--reference-position"},
     SettingOption{TableSetting::reference, "--at"},

@@ -32,7 +32,7 @@ std::vector<std::string> formats_that_do(const Machine& machine, const ErrorSet&
       WriterRequest quick = request;
       quick.names = control_axis_names(machine, format, {});
       quick.left_out.clear();
-      quick.negate = false;
+      quick.negate = quick.negate_own = false;
       quick.most_nodes = 0;
       quick.nodes = kQuickNodes;
       const WrittenTables tables = format.write(machine, errors, quick);

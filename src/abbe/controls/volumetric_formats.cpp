@@ -1,39 +1,16 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <string_view>
 
 #include "abbe/compensate/point_correction.h"
 #include "abbe/compensate/tables/error_tables.h"
+#include "abbe/controls/error_model_writer.h"
 #include "abbe/controls/table_format.h"
 #include "abbe/formats/controls/table_volumetric.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {
-
-/// Every k-th place of a table, some forty in all.
-std::vector<std::size_t> some_of(std::size_t count) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t k = 0; k < count; k += count / 40 + 1) chosen.push_back(k);
-  return chosen;
-}
-
-/// What of the errors is written: wanted axes, no tool offset, nothing that was left out.
-ErrorSet written_errors(const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
-  ErrorSet written;
-  for (const ErrorMotion& motion : errors.motions) {
-    if (!request.axes[motion.axis]) continue;
-    if (request.left_out.count(error_motion_name(machine, motion.axis, motion.component)) != 0) continue;
-    written.motions.push_back(motion);
-  }
-  for (const LocationError& location : errors.locations) {
-    if (!request.axes[location.axis]) continue;
-    if (request.left_out.count(location_error_name(machine, location.axis, location.component)) != 0) continue;
-    written.locations.push_back(location);
-  }
-  return written;
-}
 
 void check_model(const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
   if (errors.composition.order != ErrorOrder::iso || errors.composition.first_order) {
@@ -54,23 +31,14 @@ void add_summaries(const Machine& machine, const ErrorSet& written, const BuiltE
     const ErrorTable& table = built.tables.tables[t];
     for (std::size_t c = 0; c < table.components.size(); ++c) {
       const Component component = table.components[c];
-      WrittenTable summary;
-      summary.name = error_motion_name(machine, table.axis, component);
-      summary.nodes = table.positions.size();
-      summary.step = table.positions.size() > 1 ? table.positions[1] - table.positions[0] : 0;
+      std::vector<double> corrections = table.values[c];
+      for (double& value : corrections) value = -value;
+      WrittenTable summary =
+          summary_of(error_motion_name(machine, table.axis, component), table.positions, corrections);
       summary.step_is_angle = machine.axes[table.axis].kind == AxisKind::rotary;
       summary.is_angle = is_rotation(component);
       summary.interpolation_error = built.interpolation_error[t][c];
       summary.within = summary.interpolation_error <= (summary.is_angle ? options.tolerance_rad : options.tolerance_mm);
-      for (std::size_t k = 0; k < table.positions.size(); ++k) {
-        if (std::abs(table.values[c][k]) < summary.largest) continue;
-        summary.largest = std::abs(table.values[c][k]);
-        summary.largest_at = table.positions[k];
-      }
-      for (const std::size_t k : some_of(table.positions.size())) {
-        summary.positions.push_back(table.positions[k]);
-        summary.corrections.push_back(-table.values[c][k]);
-      }
       summary.values = [axis = table.axis, component, positions = summary.positions](const ErrorSet& errors) {
         std::vector<double> values;
         for (const double q : positions) {
@@ -81,22 +49,7 @@ void add_summaries(const Machine& machine, const ErrorSet& written, const BuiltE
       made.tables.push_back(std::move(summary));
     }
   }
-  for (const LocationError& location : written.locations) {
-    WrittenTable summary;
-    summary.name = location_error_name(machine, location.axis, location.component);
-    summary.nodes = 1;
-    summary.is_angle = is_rotation(location.component);
-    summary.largest = std::abs(location.value);
-    summary.corrections = {-location.value};
-    summary.values = [axis = location.axis, component = location.component](const ErrorSet& errors) {
-      double value = 0;
-      for (const LocationError& one : errors.locations) {
-        if (one.axis == axis && one.component == component) value -= one.value;
-      }
-      return std::vector<double>{value};
-    };
-    made.tables.push_back(std::move(summary));
-  }
+  for (const LocationError& location : written.locations) made.tables.push_back(summary_of(machine, location));
 }
 
 /// Configuration list with the documented names: axes by number in the order X Y Z A B C, sides, file.
@@ -112,7 +65,7 @@ std::string isg_list(const Machine& machine, const WriterRequest& request) {
 WrittenTables make_volumetric(bool isg, const TableFormat& format, const Machine& machine, const ErrorSet& errors,
                               const WriterRequest& request) {
   check_model(machine, errors, request);
-  const ErrorSet written = written_errors(machine, errors, request);
+  const ErrorSet written = wanted_errors(machine, errors, request);
   WrittenTables made;
   std::unique_ptr<PointCorrection> correction;
   if (request.nodes > 0 || (written.motions.empty() && written.locations.empty())) {

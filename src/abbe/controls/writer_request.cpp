@@ -22,6 +22,7 @@ std::set<TableSetting> settings_of(const ControlTableRequest& request) {
   add(TableSetting::first_table, request.first_table.has_value());
   add(TableSetting::encoder, request.encoder.has_value());
   add(TableSetting::negate, request.negate);
+  add(TableSetting::negate_own, request.negate_own);
   add(TableSetting::detection_unit, request.detection_unit_mm.has_value());
   add(TableSetting::reference_position, !request.reference_position.empty());
   add(TableSetting::reference, !request.reference.empty());
@@ -148,6 +149,7 @@ WriterRequest writer_request(const ControlTableRequest& request, const TableForm
   filled.first_table = request.first_table.value_or(0);
   if (filled.first_table > 999) throw InputError({.field = "--first-table"}, "too large", "0 to 999");
   filled.negate = request.negate;
+  filled.negate_own = request.negate_own;
   filled.unit_mm = request.detection_unit_mm.value_or(filled.unit_mm);
   if (!(filled.unit_mm >= 1e-6 && filled.unit_mm <= 1e-2)) {
     throw InputError({.field = "--detection-unit-um"}, "out of range", "0.001 to 10 um");

@@ -25,4 +25,12 @@ std::vector<AxisTable> parse_heidenhain_com(std::string_view text, const std::st
 
 inline constexpr std::size_t kHeidenhainPoints = 256;
 
+/// A table that is in force for an axis.
+struct HeidenhainAssignment {
+  std::string column;  ///< what the control calls the axis
+  std::string file;
+};
+/// CONFIG.CMA: one row of tables, the active one.
+std::string heidenhain_assignment_text(const std::vector<HeidenhainAssignment>& tables);
+
 }  // namespace abbe

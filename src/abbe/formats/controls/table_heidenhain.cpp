@@ -94,4 +94,13 @@ std::vector<AxisTable> parse_heidenhain_com(std::string_view text, const std::st
   return tables;
 }
 
+std::string heidenhain_assignment_text(const std::vector<HeidenhainAssignment>& tables) {
+  std::string columns = "NR ACTIVE", files = "0 *";
+  for (const HeidenhainAssignment& table : tables) {
+    columns += " " + table.column;
+    files += " " + table.file;
+  }
+  return "BEGIN CONFIG.CMA MM\n" + columns + "\n" + files + "\n[END]\n";
+}
+
 }  // namespace abbe
