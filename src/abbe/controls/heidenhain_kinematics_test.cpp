@@ -67,7 +67,8 @@ TEST_P(HeidenhainValuesCarry, PositionsAndDirectionsOfRotaryAxes) {
   EXPECT_GT(made.before.position_statistics.rms, 0.03);
   EXPECT_LT(made.after.position_statistics.maximum, 5e-6) << "numbers are written with 1e-6 mm and 1e-7 degrees";
   for (const CarriedError& error : made.errors) {
-    if (error.effect_before > 1e-4) EXPECT_GT(error.carried(), 0.99) << error.name;
+    if (!(error.effect_before > 1e-4)) continue;  // moves no point
+    EXPECT_GT(error.carried(), 0.99) << error.name;
   }
 }
 

@@ -23,11 +23,11 @@ struct ComptabColumn {
 struct KinematicsRow {
   enum class Key { trans, mach_axis, mach_base };
   Key key = Key::trans;
-  char axis = ' ';                      ///< AXIS: X Y Z U V W A B C; blank for MachBase
-  std::string doc;                      ///< comment of at most kKinematicsDoc characters
-  std::optional<double> coord;          ///< COORD, mm or rad
-  std::optional<double> constant;       ///< COMPTAB, a number that is added; mm or rad
-  std::optional<ComptabColumn> column;  ///< COMPTAB, a column that is added
+  char axis = ' ';                        ///< AXIS: X Y Z U V W A B C; blank for MachBase
+  std::string doc{};                      ///< comment of at most kKinematicsDoc characters
+  std::optional<double> coord{};          ///< COORD, mm or rad
+  std::optional<double> constant{};       ///< COMPTAB, a number that is added; mm or rad
+  std::optional<ComptabColumn> column{};  ///< COMPTAB, a column that is added
   bool operator==(const KinematicsRow&) const = default;
 };
 inline constexpr std::size_t kKinematicsDoc = 14;

@@ -42,8 +42,8 @@ ReadColumn read_column(const TableLines& lines, std::string_view name, const Tab
                fmt::format("{} (the axis itself) or C1 to C6", axis.name));
   }
   if (*place) lines.fail("columns", fmt::format("{} is there twice", shown_word(name)), "every column once");
-  *place = AxisTable{.input = table.axis, .output = table.axis};
-  column.table = &**place;
+  column.table = &place->emplace();
+  column.table->input = column.table->output = table.axis;
   return column;
 }
 
