@@ -1,5 +1,5 @@
 # Install and export. `make install` installs the components runtime (the command and its companions), data (examples,
-# documentation, manual pages), elsewhere_in_debian, and development: a consumer writes find_package(abbe) and links
+# documentation, manual pages), mpi, elsewhere_in_debian, and development: a consumer writes find_package(abbe) and links
 # abbe::identify, abbe::formats, ... cmake/AbbePackage.cmake makes packages of them, of linuxcnc (linuxcnc/CMakeLists.txt) and
 # of static, the command for any Linux.
 set(abbe_data ${CMAKE_INSTALL_DATADIR}/abbe)
@@ -11,6 +11,10 @@ if(TARGET abbe-step)
   install(TARGETS abbe-step RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
   install(TARGETS abbe-step RUNTIME DESTINATION lib/abbe COMPONENT static EXCLUDE_FROM_ALL)
   install(SCRIPT ${PROJECT_SOURCE_DIR}/packaging/tarball/bundle.cmake COMPONENT static EXCLUDE_FROM_ALL)
+endif()
+# No package contains it: it is linked with the MPI of this machine.
+if(TARGET abbe-mpi)
+  install(TARGETS abbe-mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT mpi)
 endif()
 # The examples: those of the help, and what `abbe reproduce` reads. The closed loop and the thermal day are scripts of the
 # source tree.
