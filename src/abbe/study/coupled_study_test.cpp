@@ -38,7 +38,7 @@ kind = "axis"
 axis = "B1"
 )";
 
-const char* const kTrueErrors = R"([[motion]]
+const char* const kTrueErrorsOfCoupled = R"([[motion]]
 name = "EBC"
 basis = "fourier"
 order = 1
@@ -104,7 +104,7 @@ std::filesystem::path coupled_folder(const char* name) {
   const std::filesystem::path folder = test::empty_folder(name);
   std::ofstream(folder / "nominal.machine.toml") << fmt::format(fmt::runtime(kParallelogram), -1);
   std::ofstream(folder / "wrong.machine.toml") << fmt::format(fmt::runtime(kParallelogram), -0.9998);
-  std::ofstream(folder / "truth.errors.toml") << kTrueErrors;
+  std::ofstream(folder / "truth.errors.toml") << kTrueErrorsOfCoupled;
   std::ofstream poses(folder / "poses.csv");
   poses << "C_deg,B1_deg,B2_deg\n";
   RandomStream random(3);

@@ -20,21 +20,21 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kExamples = ABBE_SOURCE_DIR "/examples/";
-constexpr double kToolLength = 60;
+const std::string kExamplesOfWarmParts = ABBE_SOURCE_DIR "/examples/";
+constexpr double kLongerTool = 60;
 
 const WorkpieceExpansion kWarmPart{.temperature = 28,
                                    .coefficient = 23.4e-6,
                                    .standard_uncertainty = 1e-6,
                                    .temperature_uncertainty = 0.4,
                                    .fixed_point = {30, -20, 10}};
-constexpr double kStrain = 23.4e-6 * 8;
+constexpr double kStrainOfWarmPart = 23.4e-6 * 8;
 
-Machine trunnion() { return read_machine(kExamples + "machines/trunnion-mill.machine.toml"); }
+Machine warm_trunnion() { return read_machine(kExamplesOfWarmParts + "machines/trunnion-mill.machine.toml"); }
 
-ProgramRequest warm_program(const ErrorSet& errors) {
+ProgramRequest program_for_warm_part(const ErrorSet& errors) {
   ProgramRequest request;
-  request.machine = trunnion();
+  request.machine = warm_trunnion();
   request.errors = errors;
   request.program_file = "p.ngc";
   request.workpiece = kWarmPart;
@@ -58,7 +58,7 @@ std::map<char, double> last_words(const std::string& program) {
   return words;
 }
 
-std::vector<double> axes_of(const Machine& machine, const std::map<char, double>& words, double tool_length) {
+std::vector<double> axes_of_words(const Machine& machine, const std::map<char, double>& words, double tool_length) {
   std::vector<double> at(machine.axes.size(), 0.0);
   for (const auto& [word, value] : words) {
     const std::size_t axis = machine.find_axis(std::string(1, word));
@@ -68,7 +68,7 @@ std::vector<double> axes_of(const Machine& machine, const std::map<char, double>
   return at;
 }
 
-std::string run_program(const ProgramRequest& request, const std::string& program, CorrectedProgram& result) {
+std::string run_warm_program(const ProgramRequest& request, const std::string& program, CorrectedProgram& result) {
   std::string text;
   result = correct_program(
       request, program, [&](std::string_view piece) { text += piece; }, [](std::size_t) {});
@@ -83,41 +83,42 @@ std::string move_with_tool(double tool_length) {
 }
 
 /// Where the actual tool is at the end of the program, from where it should be on the warm part.
-double missed(const ErrorSet& errors, double tool_length, const std::string& corrected) {
-  Machine machine = trunnion();
+double missed_on_warm_part(const ErrorSet& errors, double tool_length, const std::string& corrected) {
+  Machine machine = warm_trunnion();
   machine.tool_offset -= Eigen::Vector3d(0, 0, tool_length);
   const std::vector<double> commanded =
-      axes_of(machine, {{'X', 60}, {'Y', -45}, {'Z', -180}, {'A', -25}, {'C', 40}}, tool_length);
+      axes_of_words(machine, {{'X', 60}, {'Y', -45}, {'Z', -180}, {'A', -25}, {'C', 40}}, tool_length);
   const Eigen::Vector3d nominal = nominal_workpiece_from_tool(machine, commanded).translation;
-  const Eigen::Vector3d wanted = kWarmPart.fixed_point + (1 + kStrain) * (nominal - kWarmPart.fixed_point);
-  const std::vector<double> at = axes_of(machine, last_words(corrected), tool_length);
+  const Eigen::Vector3d wanted = kWarmPart.fixed_point + (1 + kStrainOfWarmPart) * (nominal - kWarmPart.fixed_point);
+  const std::vector<double> at = axes_of_words(machine, last_words(corrected), tool_length);
   return (actual_workpiece_from_tool(machine, errors, at).translation - wanted).norm();
 }
 
 TEST(WorkpieceOfAProgram, TheToolReachesThePointsOfTheWarmPart) {
-  const ErrorSet errors = read_errors(kExamples + "compensate/trunnion.errors.toml", trunnion()).errors;
-  for (const double tool_length : {0.0, kToolLength}) {
+  const ErrorSet errors = read_errors(kExamplesOfWarmParts + "compensate/trunnion.errors.toml", warm_trunnion()).errors;
+  for (const double tool_length : {0.0, kLongerTool}) {
     CorrectedProgram result;
-    const std::string alone = run_program(warm_program({}), move_with_tool(tool_length), result);
-    EXPECT_LT(missed({}, tool_length, alone), 3e-6) << "the decimals of the program";
-    EXPECT_GT(missed({}, tool_length, move_with_tool(tool_length)), 5e-3);
-    const std::string with_errors = run_program(warm_program(errors), move_with_tool(tool_length), result);
+    const std::string alone = run_warm_program(program_for_warm_part({}), move_with_tool(tool_length), result);
+    EXPECT_LT(missed_on_warm_part({}, tool_length, alone), 3e-6) << "the decimals of the program";
+    EXPECT_GT(missed_on_warm_part({}, tool_length, move_with_tool(tool_length)), 5e-3);
+    const std::string with_errors =
+        run_warm_program(program_for_warm_part(errors), move_with_tool(tool_length), result);
     // Second order: angles of 1e-4 act on the displacement of 20 um by the part.
-    EXPECT_LT(missed(errors, tool_length, with_errors), 2e-5);
+    EXPECT_LT(missed_on_warm_part(errors, tool_length, with_errors), 2e-5);
   }
 }
 
 TEST(WorkpieceOfAProgram, ItsUncertaintyIsStated) {
   CorrectedProgram result;
-  run_program(warm_program({}), move_with_tool(kToolLength), result);
-  Machine machine = trunnion();
-  machine.tool_offset -= Eigen::Vector3d(0, 0, kToolLength);
+  run_warm_program(program_for_warm_part({}), move_with_tool(kLongerTool), result);
+  Machine machine = warm_trunnion();
+  machine.tool_offset -= Eigen::Vector3d(0, 0, kLongerTool);
   const ProgramPlace& place = result.report.largest_shift;
   const std::vector<double> at(place.position.begin(),
                                place.position.begin() + static_cast<std::ptrdiff_t>(machine.axes.size()));
   const Eigen::Vector3d arm = nominal_workpiece_from_tool(machine, at).translation - kWarmPart.fixed_point;
   ASSERT_TRUE(result.largest.stated);
-  EXPECT_NEAR(result.report.largest_shift.value, kStrain * arm.norm(), 1e-3 * kStrain * arm.norm());
+  EXPECT_NEAR(result.report.largest_shift.value, kStrainOfWarmPart * arm.norm(), 1e-3 * kStrainOfWarmPart * arm.norm());
   EXPECT_NEAR(result.largest.point / (std::sqrt(strain_variance(kWarmPart, 8)) * arm.norm()), 1, 2e-3);
   const ProgramWordsRequest words{.program = "p.ngc", .output = "out.ngc"};
   EXPECT_THAT(program_text(words, machine, result),
@@ -126,19 +127,19 @@ TEST(WorkpieceOfAProgram, ItsUncertaintyIsStated) {
 }
 
 TEST(WorkpieceOfAProgram, NeedsATemperatureAndErrorsAsInTheStandard) {
-  ProgramRequest request = warm_program({});
+  ProgramRequest request = program_for_warm_part({});
   request.workpiece->temperature.reset();
   CorrectedProgram result;
-  EXPECT_THAT(message_of([&] { run_program(request, move_with_tool(0), result); }),
+  EXPECT_THAT(message_of([&] { run_warm_program(request, move_with_tool(0), result); }),
               HasSubstr("--workpiece-temperature-degC: is missing"));
-  request = warm_program({});
+  request = program_for_warm_part({});
   request.errors.composition.first_order = true;
-  EXPECT_THAT(message_of([&] { run_program(request, move_with_tool(0), result); }), HasSubstr("composition"));
+  EXPECT_THAT(message_of([&] { run_warm_program(request, move_with_tool(0), result); }), HasSubstr("composition"));
 }
 
 TEST(WorkpieceOfAMap, IsADisplacementFromTheFixedPointWithItsUncertainty) {
   ErrorsMapRequest request;
-  request.machine = trunnion();
+  request.machine = warm_trunnion();
   request.workpiece = kWarmPart;
   request.fit_datum = false;
   request.grid.resize(request.machine.axes.size());

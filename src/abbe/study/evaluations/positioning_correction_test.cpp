@@ -105,7 +105,7 @@ TEST(PositioningAt20Degrees, OtherContributionsAreAddedAndRangesAreThoseOfTheCor
   EXPECT_NEAR(result.report.details["uncertainty_contributions"][1]["expanded_uncertainty_um"].get<double>(), 8, 1e-6);
 }
 
-std::string problem_of(const PositioningTest& test) {
+std::string problem_at_20_degrees(const PositioningTest& test) {
   return message_of([&] { evaluated_test(test); });
 }
 
@@ -113,39 +113,43 @@ TEST(PositioningAt20Degrees, WhatMissesEachOtherIsNamed) {
   PositioningTest test = warm_positioning();
   test.linear.machine_expansion = 0;
   test.expansion.machine_temperature = 24;
-  EXPECT_THAT(problem_of(test), HasSubstr("--machine-expansion-um-per-m-K: is missing, but the machine has a temp"));
+  EXPECT_THAT(problem_at_20_degrees(test),
+              HasSubstr("--machine-expansion-um-per-m-K: is missing, but the machine has a temp"));
   test = warm_positioning();
   test.expansion.machine_temperature_uncertainty = 1;
-  EXPECT_THAT(problem_of(test), HasSubstr("--u-machine-temperature-K: has no effect without the temperature"));
+  EXPECT_THAT(problem_at_20_degrees(test),
+              HasSubstr("--u-machine-temperature-K: has no effect without the temperature"));
   test.expansion.machine_temperature = 24;
   test.linear.device_expansion = 11e-6;
-  EXPECT_THAT(problem_of(test), HasSubstr("--instrument-temperature-degC: is missing, but readings are corrected"));
+  EXPECT_THAT(problem_at_20_degrees(test),
+              HasSubstr("--instrument-temperature-degC: is missing, but readings are corrected"));
   test = warm_positioning();
   test.expansion.machine_temperature = 24;
   test.linear.temperature_from_20_C = 4;
-  EXPECT_THAT(problem_of(test), HasSubstr("--temperature-from-20C-K: is given together with a temperature"));
+  EXPECT_THAT(problem_at_20_degrees(test), HasSubstr("--temperature-from-20C-K: is given together with a temperature"));
   test = warm_positioning("machine_degC");
   test.expansion.machine_temperature = 24;
-  EXPECT_THAT(problem_of(test), HasSubstr("--machine-temperature-degC: is given together with a column"));
+  EXPECT_THAT(problem_at_20_degrees(test), HasSubstr("--machine-temperature-degC: is given together with a column"));
   test = warm_positioning("time_min");
   test.temperatures = parse_temperature_record("time_min,machine_degC\n0,24\n30,26\n", "t.csv");
-  EXPECT_THAT(problem_of(test), HasSubstr("time: reading 49 was taken at 40 min, and the temperatures of t.csv are "
-                                          "those from 0 to 30 min"));
+  EXPECT_THAT(problem_at_20_degrees(test),
+              HasSubstr("time: reading 49 was taken at 40 min, and the temperatures of t.csv are "
+                        "those from 0 to 30 min"));
   test = warm_positioning();
   test.temperatures = parse_temperature_record("time_min,machine_degC\n0,24\n30,26\n", "t.csv");
-  EXPECT_THAT(problem_of(test), HasSubstr("time_min: missing column"));
+  EXPECT_THAT(problem_at_20_degrees(test), HasSubstr("time_min: missing column"));
   test = warm_positioning();
   test.expansion.machine_temperature = 24;
   test.linear.machine_temperature_range = 1;
   test.expansion.machine_temperature_uncertainty = 0.3;
-  EXPECT_THAT(problem_of(test), HasSubstr("is given together with --machine-temperature-range-K"));
+  EXPECT_THAT(problem_at_20_degrees(test), HasSubstr("is given together with --machine-temperature-range-K"));
   test = warm_positioning();
   test.expansion.common_temperature_uncertainty = 0.1;
-  EXPECT_THAT(problem_of(test), HasSubstr("--u-common-temperature-K: has no effect"));
+  EXPECT_THAT(problem_at_20_degrees(test), HasSubstr("--u-common-temperature-K: has no effect"));
   PositioningTest rotary;
   rotary.readings = parse_positioning("direction,target_deg,deviation_arcsec\n+,0,0\n+,90,2\n", "x.csv");
   rotary.expansion.machine_temperature = 24;
-  EXPECT_THAT(problem_of(rotary), HasSubstr("--machine-expansion-um-per-m-K: is missing"));
+  EXPECT_THAT(problem_at_20_degrees(rotary), HasSubstr("--machine-expansion-um-per-m-K: is missing"));
 }
 
 TEST(CircularAt20Degrees, RadiiAreThoseOfTheMachineAndTheBarAt20Degrees) {
