@@ -1,12 +1,14 @@
 # Tests that need more than one folder; unit tests stand beside their source and are named in abbe_library().
 #
-# abbe_cross_test(NAME SOURCES a_test.cpp ... LINK abbe::identify ... [LABEL quick|long] [TIMEOUT seconds] [USES_COMMAND])
+# abbe_cross_test(NAME SOURCES a_test.cpp ... LINK abbe::identify ... [LABEL quick|long] [TIMEOUT seconds] [USES_COMMAND]
+#   [COMPUTES])
 #
 # Quick tests run on every build and under the sanitizers; long ones only in `make long`. USES_COMMAND: the test runs the
-# `abbe` command, which may start its companion programs, leaves the computing to it, and is given its path as ABBE_COMMAND.
+# `abbe` command, which may start its companion programs, leaves the computing to it, unless it COMPUTES (AbbeUnits.cmake),
+# and is given its path as ABBE_COMMAND.
 # Every test gets ABBE_SOURCE_DIR, to find examples/ and tests/golden/.
 function(abbe_cross_test name)
-  cmake_parse_arguments(ARG "USES_COMMAND" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "USES_COMMAND;COMPUTES" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL quick)
   endif()
@@ -15,7 +17,7 @@ function(abbe_cross_test name)
   endif()
   add_executable(${name})
   set(little "")
-  if(ARG_USES_COMMAND)
+  if(ARG_USES_COMMAND AND NOT ARG_COMPUTES)
     set(little COMPUTES_LITTLE)
   endif()
   abbe_test_units(${name} ${PROJECT_SOURCE_DIR}/tests SOURCES ${ARG_SOURCES} ${little})
