@@ -4,18 +4,12 @@
 
 #include <cassert>
 
-#include "abbe/formats/nc/program_text.h"
+#include "abbe/formats/controls/heidenhain_lines.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/table_numbers.h"
 #include "abbe/formats/text/text_cursor.h"
 
 namespace abbe {
-namespace {
-
-std::string number_of(double value, bool rotary) { return fixed_number(shown_position(value, rotary), rotary ? 7 : 6); }
-
-}  // namespace
-
 std::string heidenhain_com_text(const std::vector<AxisTable>& tables, const std::vector<TableAxisName>& axes,
                                 double sign) {
   assert(!tables.empty());
@@ -24,9 +18,9 @@ std::string heidenhain_com_text(const std::vector<AxisTable>& tables, const std:
   for (const AxisTable& table : tables) text += " " + table_axis(axes, table.output).name;
   text += "\n";
   for (std::size_t k = 0; k < tables.front().positions.size(); ++k) {
-    text += fmt::format("{} {}", k, number_of(tables.front().positions[k], input.rotary));
+    text += fmt::format("{} {}", k, heidenhain_number(tables.front().positions[k], input.rotary));
     for (const AxisTable& table : tables) {
-      text += " " + number_of(sign * table.forward[k], table_axis(axes, table.output).rotary);
+      text += " " + heidenhain_number(sign * table.forward[k], table_axis(axes, table.output).rotary);
     }
     text += "\n";
   }
@@ -38,11 +32,8 @@ std::vector<AxisTable> parse_heidenhain_com(std::string_view text, const std::st
   const bool turns = table_axis(axes, input).rotary;
   std::vector<AxisTable> tables;
   std::vector<bool> rotary;
-  TableLines lines(text, file);
-  if (!lines.next() || !lines.line().starts_with("BEGIN ") || words_of(lines.line()).back() != "MM") {
-    throw InputError({.file = file, .line = 1}, "no table of a control", "BEGIN name.COM MM");
-  }
-  if (!lines.next()) throw InputError({.file = file}, "no columns", "NR AXISPOS and axes");
+  HeidenhainLines rows(text, file, "BEGIN name.COM MM", "NR AXISPOS and axes");
+  const TableLines& lines = rows.lines();
   const std::vector<std::string_view> columns = words_of(lines.line());
   if (columns.size() < 3 || columns[0] != "NR" || columns[1] != "AXISPOS") {
     lines.fail("columns", "not understood", "NR AXISPOS and at least one axis");
@@ -61,21 +52,12 @@ std::vector<AxisTable> parse_heidenhain_com(std::string_view text, const std::st
     tables.push_back(std::move(table));
     rotary.push_back(axis->rotary);
   }
-  bool ended = false;
-  while (lines.next()) {
-    const std::vector<std::string_view> words = words_of(lines.line());
-    if (words.empty()) continue;
-    if (ended) lines.fail("", "text behind [END]", "the end of the file");
-    if (words[0] == "[END]") {
-      ended = true;
-      continue;
-    }
+  while (rows.next()) {
+    const std::vector<std::string_view> words = words_of(rows.line());
     if (words.size() != columns.size()) {
       lines.fail("row", fmt::format("{} fields", words.size()), fmt::format("{} fields", columns.size()));
     }
-    if (lines.whole(words[0], "NR", 0, kHeidenhainPoints - 1) != tables.front().positions.size()) {
-      lines.fail("NR", "is not the next number", "0, 1, 2 ...");
-    }
+    rows.check_number(words[0], tables.front().positions.size(), kHeidenhainPoints);
     const double position = inside_position(lines.value(words[1], "AXISPOS", turns ? "degrees" : "mm"), turns);
     for (std::size_t t = 0; t < tables.size(); ++t) {
       AxisTable& table = tables[t];
@@ -88,9 +70,7 @@ std::vector<AxisTable> parse_heidenhain_com(std::string_view text, const std::st
       table.reverse.push_back(table.forward.back());
     }
   }
-  if (!ended || tables.front().positions.empty()) {
-    throw InputError({.file = file}, ended ? "no rows" : "no [END]", "rows, and [END]");
-  }
+  rows.check_end(tables.front().positions.size());
   return tables;
 }
 

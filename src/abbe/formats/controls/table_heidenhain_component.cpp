@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <cassert>
 
+#include "abbe/formats/controls/heidenhain_lines.h"
 #include "abbe/formats/controls/table_heidenhain.h"
 #include "abbe/formats/controls/table_heidenhain_kinematics.h"
-#include "abbe/formats/nc/program_text.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/table_numbers.h"
 #include "abbe/formats/text/text_cursor.h"
 
 namespace abbe {
 namespace {
-
-std::string number_of_component(double value, bool rotary) {
-  return fixed_number(shown_position(value, rotary), rotary ? 7 : 6);
-}
 
 /// A column of the text with the table that it is read into.
 struct ReadColumn {
@@ -85,9 +81,9 @@ std::string heidenhain_component_text(const ComponentTable& table, const std::st
   text += "\n";
   const std::vector<double>& positions = columns.front().table->positions;
   for (std::size_t k = 0; k < positions.size(); ++k) {
-    text += fmt::format("{} {}", k, number_of_component(positions[k], axis.rotary));
+    text += fmt::format("{} {}", k, heidenhain_number(positions[k], axis.rotary));
     for (const Column& column : columns) {
-      text += " " + number_of_component(column.sign * column.table->forward[k], column.rotary);
+      text += " " + heidenhain_number(column.sign * column.table->forward[k], column.rotary);
     }
     text += "\n";
   }
@@ -97,30 +93,18 @@ std::string heidenhain_component_text(const ComponentTable& table, const std::st
 ComponentTable parse_heidenhain_component(std::string_view text, const std::string& file, std::size_t axis,
                                           const std::vector<TableAxisName>& axes, double own_sign, double sign) {
   const TableAxisName& name = table_axis(axes, axis);
-  TableLines lines(text, file);
-  if (!lines.next() || !lines.line().starts_with("BEGIN ") || words_of(lines.line()).back() != "MM") {
-    throw InputError({.file = file, .line = 1}, "no table of a control", "BEGIN name.COM MM");
-  }
-  if (!lines.next()) throw InputError({.file = file}, "no columns", "NR AXISPOS and columns");
+  HeidenhainLines rows(text, file, "BEGIN name.COM MM", "NR AXISPOS and columns");
+  const TableLines& lines = rows.lines();
   ComponentTable table;
   table.axis = axis;
   const std::vector<ReadColumn> columns = read_columns(lines, name, own_sign, sign, table);
   const AxisTable& first = *columns.front().table;
-  bool ended = false;
-  while (lines.next()) {
-    const std::vector<std::string_view> words = words_of(lines.line());
-    if (words.empty()) continue;
-    if (ended) lines.fail("", "text behind [END]", "the end of the file");
-    if (words[0] == "[END]") {
-      ended = true;
-      continue;
-    }
+  while (rows.next()) {
+    const std::vector<std::string_view> words = words_of(rows.line());
     if (words.size() != columns.size() + 2) {
       lines.fail("row", fmt::format("{} fields", words.size()), fmt::format("{} fields", columns.size() + 2));
     }
-    if (lines.whole(words[0], "NR", 0, kHeidenhainPoints - 1) != first.positions.size()) {
-      lines.fail("NR", "is not the next number", "0, 1, 2 ...");
-    }
+    rows.check_number(words[0], first.positions.size(), kHeidenhainPoints);
     const double position =
         inside_position(lines.value(words[1], "AXISPOS", name.rotary ? "degrees" : "mm"), name.rotary);
     if (!first.positions.empty() && !(position > first.positions.back())) {
@@ -134,9 +118,7 @@ ComponentTable parse_heidenhain_component(std::string_view text, const std::stri
       column.table->reverse.push_back(column.table->forward.back());
     }
   }
-  if (!ended || first.positions.empty()) {
-    throw InputError({.file = file}, ended ? "no rows" : "no [END]", "rows, and [END]");
-  }
+  rows.check_end(first.positions.size());
   return table;
 }
 

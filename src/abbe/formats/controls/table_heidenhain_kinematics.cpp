@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "abbe/formats/nc/program_text.h"
+#include "abbe/formats/controls/heidenhain_lines.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/table_numbers.h"
 #include "abbe/formats/text/text_cursor.h"
@@ -19,10 +19,6 @@ constexpr std::string_view kKinematicsLetters = "XYZABCUVW";
 constexpr std::size_t kKinematicsRows = 1000;
 
 bool turns(char letter) { return kinematics_coordinate(letter) >= 3; }
-
-std::string number_of_row(double value, bool rotary) {
-  return fixed_number(shown_position(value, rotary), rotary ? 7 : 6);
-}
 
 std::string_view key_text(KinematicsRow::Key key) {
   switch (key) {
@@ -38,7 +34,7 @@ std::string_view key_text(KinematicsRow::Key key) {
 
 std::string comptab_text(const KinematicsRow& row, const std::vector<TableAxisName>& axes, double sign) {
   if (row.column) return fmt::format("A{}C{}", table_axis(axes, row.column->axis).name, row.column->column + 1);
-  return row.constant ? number_of_row(sign * *row.constant, turns(row.axis)) : "";
+  return row.constant ? heidenhain_number(sign * *row.constant, turns(row.axis)) : "";
 }
 
 /// Fields below the places of the names in the second line.
@@ -162,33 +158,21 @@ std::string heidenhain_kinematics_text(const std::vector<KinematicsRow>& rows, c
   text += line(fmt::format(kRow, "NR", "DOC", "KEY", "AXIS", "COORD", "COMPTAB"));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const KinematicsRow& row = rows[k];
-    text +=
-        line(fmt::format(kRow, k, row.doc.substr(0, kKinematicsDoc), key_text(row.key), row.axis,
-                         row.coord ? number_of_row(*row.coord, turns(row.axis)) : "", comptab_text(row, axes, sign)));
+    text += line(fmt::format(kRow, k, row.doc.substr(0, kKinematicsDoc), key_text(row.key), row.axis,
+                             row.coord ? heidenhain_number(*row.coord, turns(row.axis)) : "",
+                             comptab_text(row, axes, sign)));
   }
   return text + "[END]\n";
 }
 
 std::vector<KinematicsRow> parse_heidenhain_kinematics(std::string_view text, const std::string& file,
                                                        const std::vector<TableAxisName>& axes, double sign) {
-  TableLines lines(text, file);
-  if (!lines.next() || !lines.line().starts_with("BEGIN ") || words_of(lines.line()).back() != "MM") {
-    throw InputError({.file = file, .line = 1}, "no table of a control", "BEGIN name MM");
-  }
-  if (!lines.next()) throw InputError({.file = file}, "no columns", "NR DOC KEY AXIS COORD COMPTAB");
+  HeidenhainLines all(text, file, "BEGIN name MM", "NR DOC KEY AXIS COORD COMPTAB");
+  const TableLines& lines = all.lines();
   const KinematicsFields fields(lines, lines.line());
   std::vector<KinematicsRow> rows;
-  bool ended = false;
-  while (lines.next()) {
-    if (without_blanks(lines.line()).empty()) continue;
-    if (ended) lines.fail("", "text behind [END]", "the end of the file");
-    if (without_blanks(lines.line()) == "[END]") {
-      ended = true;
-      continue;
-    }
-    if (lines.whole(fields.field(lines.line(), 0), "NR", 0, kKinematicsRows - 1) != rows.size()) {
-      lines.fail("NR", "is not the next number", "0, 1, 2 ...");
-    }
+  while (all.next()) {
+    all.check_number(fields.field(all.line(), 0), rows.size(), kKinematicsRows);
     rows.push_back(row_of(lines, fields, axes, sign));
     const bool again = rows.back().key == KinematicsRow::Key::mach_axis &&
                        std::any_of(rows.begin(), rows.end() - 1, [&](const KinematicsRow& row) {
@@ -199,7 +183,7 @@ std::vector<KinematicsRow> parse_heidenhain_kinematics(std::string_view text, co
   const KinematicsCount count = kinematics_count(rows);
   if (!kinematics_fits(count))
     throw InputError({.file = file}, "more rows than the control has room for", kinematics_room(count));
-  if (!ended || rows.empty()) throw InputError({.file = file}, ended ? "no rows" : "no [END]", "rows, and [END]");
+  all.check_end(rows.size());
   return rows;
 }
 
