@@ -149,7 +149,7 @@ void count_entries(const std::vector<KinematicsRow>& rows, WrittenTables& made) 
 
 WrittenTables make_kinematics_comp(const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
   if (errors.composition.first_order) {
-    throw InputError({.field = "--for"}, "first-order errors are no turns, which the rows of the description are",
+    throw InputError({.field = "--for"}, "the rows of this format are rotations, and first-order errors are not",
                      "errors that are not `first_order`");
   }
   const ErrorSet written = wanted_errors(machine, errors, request);
