@@ -12,7 +12,8 @@ namespace abbe {
 struct CommandLine {
   Program program;
   std::function<int()> run;           ///< returns an ExitCode
-  ProcessGroup* processes = nullptr;  ///< that share the work of the command; null: this one does all
+  ProcessGroup* processes = nullptr;  ///< that mpirun has started; null: there is one
+  bool shares_work = false;           ///< among the processes; else the first one alone runs the subcommand
 
   CommandLine();
   /// Heading in --help of the subcommands that are added from now on; empty: --help does not list them.

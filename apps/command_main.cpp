@@ -95,6 +95,7 @@ int run_command(int argc, const char* const* argv, const std::function<void(Comm
       case ParseResult::command:
         break;
     }
+    if (line.processes != nullptr && !line.processes->is_first() && !line.shares_work) return kDone;
     return printed(line.run ? line.run() : static_cast<int>(kInternalError));
   } catch (const InputError& error) {
     complain(error.what());

@@ -46,6 +46,7 @@ void add_run_command(CommandLine& line) {
   command->add_flag("--accept-misfit", options->accept_misfit,
                     "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
+    line.shares_work = true;
     line.run = [options, processes = line.processes]() -> int {
       Study study = read_study(options->study);
       if (processes != nullptr && !processes->is_first()) return processes->serve(study);

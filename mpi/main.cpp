@@ -47,8 +47,7 @@ int main(int argc, char** argv) {
   };
   if (group.is_first()) return abbe::command_main(argc, argv, add);
   KeptMessages messages;
-  // Only `abbe run` shares its work; other subcommands run in the first process alone.
-  if (argc > 1 && std::string_view(argv[1]) == "run") abbe::command_main(argc, argv, add);
+  abbe::command_main(argc, argv, add);
   group.refuse(messages.text());
   return 0;
 }

@@ -43,13 +43,6 @@ std::vector<std::byte> bytes_of(const std::string& text) {
   return {first, first + text.size()};
 }
 
-Problem problem_of(const Study& study) {
-  StudyResult result;
-  result.campaign = gather_readings(study);
-  prepare_study(study, result);
-  return result.model.problem;
-}
-
 }  // namespace
 
 MpiGroup::MpiGroup(int* argc, char*** argv) {
@@ -85,11 +78,15 @@ MpiGroup::Message MpiGroup::receive(int from, const std::stop_token& stop) {
   constexpr int kBusyLooks = 2000;
   MPI_Status status;
   int has_come = 0;
-  for (int look = 0;; ++look) {
+  for (int look = 0;;) {
     MPI_Iprobe(from, MPI_ANY_TAG, MPI_COMM_WORLD, &has_come, &status);
     if (has_come != 0) break;
     stop_if_asked(stop);
-    if (look > kBusyLooks) std::this_thread::sleep_for(200us);
+    if (look < kBusyLooks) {
+      ++look;
+    } else {
+      std::this_thread::sleep_for(200us);
+    }
   }
   int count = 0;
   MPI_Get_count(&status, MPI_BYTE, &count);
@@ -105,7 +102,7 @@ Summation MpiGroup::summation(const Study& study) {
   // Made when the first sum is asked for, after the study has read the same readings.
   const auto summer = std::make_shared<std::optional<PieceSummer>>();
   return [this, study, summer](const SumRequest& request, const std::stop_token& stop) {
-    if (!*summer) summer->emplace(problem_of(study));
+    if (!*summer) summer->emplace(prepared_problem(study));
     return sum(**summer, request, study.threads, stop);
   };
 }
@@ -136,7 +133,8 @@ SumOfReadings MpiGroup::sum(PieceSummer& summer, const SumRequest& request, int 
 }
 
 int MpiGroup::serve(const Study& study) {
-  PieceSummer summer(problem_of(study));
+  if (!study.identification) return kDone;  // nothing is summed
+  PieceSummer summer(prepared_problem(study));
   while (!ended_) {
     const Message message = receive(0);
     if (message.tag == kEnd) {

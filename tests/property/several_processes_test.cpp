@@ -25,13 +25,6 @@ Study example(const std::string& file) {
   return study;
 }
 
-Problem problem_of(const Study& study) {
-  StudyResult result;
-  result.campaign = gather_readings(study);
-  prepare_study(study, result);
-  return result.model.problem;
-}
-
 /// Consecutive ranges of random lengths, some of them empty.
 std::vector<PieceRange> uneven_ranges(std::size_t pieces, std::size_t count, RandomStream& random) {
   std::vector<std::size_t> cuts = {0, pieces};
@@ -84,7 +77,7 @@ TEST_P(SeveralProcesses, GiveTheBytesOfOne) {
   ASSERT_GT(alone.identification.estimates.size(), 0) << alone.identification.message;
   ASSERT_TRUE(alone.identification.converged) << alone.identification.message;
   for (const std::size_t count : {1, 2, 3, 7}) {
-    SummingProcesses processes(count, [&](std::size_t) { return problem_of(study); });
+    SummingProcesses processes(count, [&](std::size_t) { return prepared_problem(study); });
     RandomStream random(count);
     int sums = 0;
     RunOptions options;
@@ -132,7 +125,7 @@ class OneOfThreeProcesses : public testing::Test {
                       const std::function<Study(std::size_t)>& study_of = {},
                       const std::function<void(std::vector<SumOfReadings>&)>& lose = {}) {
     SummingProcesses processes(
-        3, [&](std::size_t process) { return problem_of(study_of ? study_of(process) : study_); }, spoil);
+        3, [&](std::size_t process) { return prepared_problem(study_of ? study_of(process) : study_); }, spoil);
     RunOptions options;
     options.map = false;
     options.summation = [&](const SumRequest& request, const std::stop_token&) {
@@ -199,7 +192,7 @@ TEST_F(OneOfThreeProcesses, WhosePiecesAreMissingOrComeTwiceIsFoundOut) {
 
 TEST(StoppedIdentification, EndsWithItsSummingProcesses) {
   const Study study = example("trunnion/polygon-and-r-test.study.toml");
-  SummingProcesses processes(2, [&](std::size_t) { return problem_of(study); });
+  SummingProcesses processes(2, [&](std::size_t) { return prepared_problem(study); });
   std::stop_source source;
   int sums = 0;
   RunOptions options;

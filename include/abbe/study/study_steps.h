@@ -21,6 +21,10 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
 /// sum pieces of them (PieceSummer). Where the study chooses orders, the model is that of the largest ones.
 void prepare_study(const Study& study, StudyResult& result);
 
+/// Reads or simulates the readings of a study, and prepares it: the problem of another process.
+/// @pre the study identifies
+Problem prepared_problem(const Study& study);
+
 /// Figures of the volumetric error over the grid that all commands state (docs/conventions.md).
 VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult& result);
 

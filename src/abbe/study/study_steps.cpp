@@ -68,6 +68,13 @@ void prepare_study(const Study& study, StudyResult& result) {
   result.model = build_model(with_chosen_terms(study, result), result.campaign);
 }
 
+Problem prepared_problem(const Study& study) {
+  StudyResult result;
+  result.campaign = gather_readings(study);
+  prepare_study(study, result);
+  return result.model.problem;
+}
+
 void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress,
                     const std::stop_token& stop, const Summation& summation) {
   prepare_study(study, result);
