@@ -77,8 +77,7 @@ std::vector<double> values_on(const Machine& machine, const std::vector<ChosenSt
 bool is_outside(const Machine& machine, const ErrorsFile& file, std::size_t state, double value) {
   return std::isfinite(value) &&
          std::any_of(file.covered.begin(), file.covered.end(), [&](const CoveredState& covered) {
-           return covered.column == state_column(machine.states[state]) &&
-                  !(value >= covered.from && value <= covered.to);
+           return covered.column == state_column(machine.states[state]) && !covered.contains(value);
          });
 }
 

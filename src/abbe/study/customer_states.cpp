@@ -21,7 +21,7 @@ struct ReportedState {
   double reference = 0;
   const CoveredState* covered = nullptr;
 
-  bool is_outside() const { return covered != nullptr && !(reference >= covered->from && reference <= covered->to); }
+  bool is_outside() const { return covered != nullptr && !covered->contains(reference); }
   std::string range() const {
     return fmt::format("{} to {}", shortest_text(covered->from), shortest_text(covered->to));
   }

@@ -25,6 +25,7 @@ struct StateValues : std::vector<std::pair<std::string, double>> {
 struct CoveredState {
   std::string column;       ///< "ambient_degC"
   double from = 0, to = 0;  ///< unit of the state
+  bool contains(double value) const { return value >= from && value <= to; }
 };
 
 /// How errors wander after their measurement: every coefficient without a state by itself, as a random walk.

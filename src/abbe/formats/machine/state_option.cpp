@@ -163,7 +163,7 @@ std::vector<std::string> values_outside_covered(const Machine& machine, const Er
     if (used[j] == 0 || !std::isfinite(values[j])) continue;
     const std::string column = state_column(machine.states[j]);
     for (const CoveredState& covered : file.covered) {
-      if (covered.column != column || (values[j] >= covered.from && values[j] <= covered.to)) continue;
+      if (covered.column != column || covered.contains(values[j])) continue;
       sentences.push_back(
           fmt::format("{} = {} lies outside the {} to {} that the readings cover: the errors are extrapolated", column,
                       shortest_text(values[j]), shortest_text(covered.from), shortest_text(covered.to)));
