@@ -132,7 +132,7 @@ void thermal(std::string_view text) {
   for (const abbe::EtveSensor& one : etve.sensors) {
     if (!std::isfinite(one.etve.value) || one.hourly.value > one.etve.value * (1 + 1e-9)) std::abort();
   }
-  const abbe::SpindleRun run{etve.from, etve.to, etve.to};
+  const abbe::WarmingRun run{etve.from, etve.to, etve.to};
   if (!abbe::unread_sensor(readings, run).empty()) return;
   for (const auto& one : abbe::evaluate_spindle_distortion(readings, run, {}, 100).sensors) {
     require_response(one.warming);

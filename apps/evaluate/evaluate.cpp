@@ -22,15 +22,16 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
                            const std::string& columns, const std::string& renamed, const std::string& example,
                            EvaluationOptions& options) {
   Subcommand* command = evaluate.add_subcommand(kind, description);
-  command->footer("Columns of the file:\n" + columns + "\n\nExample:\n" + example);
-  command->add_input_file("file", options.file, "Readings (*.csv)")->required();
+  const bool is_study = columns.empty();
+  command->footer((is_study ? "" : "Columns of the file:\n" + columns + "\n\n") + "Example:\n" + example);
+  command->add_input_file("file", options.file, is_study ? "Study (*.study.toml)" : "Readings (*.csv)")->required();
   command->add_output_folder("-o,--output", options.output,
                              "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
   command
       ->add_option("--tolerance", options.tolerances,
                    "Largest permitted value of a figure, such as A_um=10; repeatable. Exit code 1 if exceeded")
       ->allow_extra_args(false);
-  add_columns(command, options.columns, renamed);
+  if (!is_study) add_columns(command, options.columns, renamed);
   command->add_flag("--json", options.json, "Print JSON for programs");
   return command;
 }
@@ -58,8 +59,7 @@ void add_customer_report_options(Subcommand& command, EvaluationOptions& options
           "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium or WeasyPrint) or *.html; *.xml: a "
           "digital calibration certificate")
       ->group("Customer report");
-  command
-      .add_output_file("--qif", options.qif, "QIF 3.0 results to write, with the figures of the customer report; *.qif")
+  command.add_output_file("--qif", options.qif, "QIF 3.0 results to write, with the same figures; *.qif")
       ->group("Customer report");
   command
       .add_input_file(

@@ -30,7 +30,7 @@ struct EvaluationOptions {
 
 /// `abbe evaluate KIND`: adds the subcommand with the options of every kind; its own options come behind it.
 /// @param evaluate  the command `evaluate`
-/// @param columns   of the file, shown by --help
+/// @param columns   of the file, shown by --help; empty: the file is a study
 /// @param renamed   example of a column with another name: "deviation_um=error"
 Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const std::string& description,
                            const std::string& columns, const std::string& renamed, const std::string& example,

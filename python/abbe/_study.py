@@ -12,7 +12,7 @@ from typing import Any, Union
 import tomli_w
 
 from . import _core
-from ._core import Errors, Instrument, Machine, Readings, StudyCheck, StudyPlan, StudyResult, VerifiedReadings
+from ._core import Errors, Evaluation, Instrument, Machine, Readings, StudyCheck, StudyPlan, StudyResult, VerifiedReadings
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -190,6 +190,20 @@ class Study:
         (False, ['improvement', 'consistency', 'reduction'])
         """
         return self._data.verify(errors, dict(readings or {}), truth, least_reduction, largest_ratio, errors_file, progress)
+
+    def location_distortion(self, readings: Mapping[str, Readings] | None = None, *, truth: Errors | None = None,
+                            options: Mapping[str, float] | None = None,
+                            tolerances: Mapping[str, float] | None = None) -> Evaluation:
+        """Location errors while the machine is heated and cools (ISO 230-3): ``abbe evaluate location-distortion``.
+
+        The poses of the study are read again and again; the readings have times. ``readings`` and ``truth`` as in
+        :meth:`run`. ``options``: numbers named like the options of the command: ``cycle_min`` or ``pause_min`` say what a
+        cycle is, ``start_min`` and ``stop_min`` when the machine is heated. ``tolerances``: ``{"d_EX0C_um": 10}``.
+        ``numbers`` of the result is a LocationDistortionNumbers. Raises :class:`abbe.InputError`.
+        Definitions: docs/evaluate-thermal.md.
+        """
+        return self._data.location_distortion(dict(readings or {}), truth, dict(options or {}), dict(tolerances or {}),
+                                              self._file)
 
     def __repr__(self) -> str:
         kind = "simulated" if self.simulated else "measured"

@@ -19,6 +19,7 @@ void bind_studies(nb::module_& module);
 void bind_study_checks(nb::module_& module);
 void bind_study_results(nb::module_& module);
 void bind_verified_readings(nb::module_& module);
+void bind_location_distortion(nb::module_& module);
 void bind_comparisons(nb::module_& module);
 void bind_imported_tables(nb::module_& module);
 void bind_plans(nb::module_& module);

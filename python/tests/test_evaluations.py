@@ -326,6 +326,26 @@ def test_thermal_numbers():
     assert axis.expansions[0].response.status == "done" and len(axis.sensors[0][0]) == 37
 
 
+WARM_UP = EXAMPLES / "warm_up/r-test.study.toml"
+
+
+def test_location_distortion_is_that_of_the_command(tmp_path):
+    asked = ["evaluate", "location-distortion", WARM_UP, "--stop-min", 240, "--tolerance", "d_EZ0A_um=20"]
+    result = abbe.Study.read(WARM_UP).location_distortion(options={"stop_min": 240}, tolerances={"d_EZ0A_um": 20})
+    assert result.ok and result.kind == "location-distortion" and result.refused == ""
+    assert result.text() == command(asked, tmp_path)
+    numbers = result.numbers
+    names = [sensor.name for sensor in numbers.locations]
+    assert len(names) == len(numbers.standard_uncertainties_mm_rad) == len(numbers.no_change) == 8
+    at = names.index("EZ0A")
+    assert numbers.locations[at].unit == "mm" and len(numbers.locations[at]) == 33
+    assert numbers.warming[at].time_constant_s == pytest.approx(3600, abs=3 * numbers.warming[at].uncertainty_s)
+    assert numbers.cooling[at].status == "done" and numbers.no_change[at] < 1e-6 < numbers.misfit_probability
+    assert numbers.temperatures[0].name == "table" and numbers.stop_s == 240 * 60 and numbers.uncertainty_factor >= 1
+    with pytest.raises(abbe.InputError, match="stop_min"):
+        abbe.Study.read(WARM_UP).location_distortion(options={"stop_min": -5})
+
+
 @bad_input
 def test_many_readings_and_one():
     n = 200_000

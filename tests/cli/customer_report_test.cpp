@@ -214,6 +214,9 @@ TEST_F(CustomerReportCommand, EveryKindOfEvaluationHasOne) {
       {{"axis-distortion", examples + "evaluate/axis_warming.csv"},
        "Thermische Verformung durch die bewegte Achse",
        "P1 = 50 mm, P2 = 250 mm, P3 = 450 mm"},
+      {{"location-distortion", examples + "warm_up/r-test.study.toml", "--stop-min", "240"},
+       "Thermische Änderung der Lageabweichungen",
+       "Spanne von EZ0A über die Dauer der Erwärmung"},
   };
   int number = 0;
   for (const Kind& kind : kinds) {

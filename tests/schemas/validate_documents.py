@@ -34,6 +34,7 @@ EVALUATIONS = {
     "temperature-variation": ["etve", "evaluate/etve.csv"],
     "spindle-distortion": ["spindle-distortion", "evaluate/spindle.csv"],
     "axis-distortion": ["axis-distortion", "evaluate/axis_warming.csv"],
+    "location-distortion": ["location-distortion", "warm_up/r-test.study.toml", "--stop-min", "240"],
     "diagonals": ["diagonals", "evaluate/diagonals.csv"],
     "circular": ["circular", "evaluate/circular.csv", "--radius-mm", "150", "--u-reading-um", "0.2"],
     "rotation": ["rotation", "evaluate/rotation.csv"],

@@ -41,7 +41,7 @@ void bind_evaluations(nb::module_& module) {
           },
           nb::sig("def numbers(self) -> PositioningNumbers | DiagonalsNumbers | CircularNumbers | RotationNumbers | "
                   "StraightnessNumbers | SquarenessNumbers | SectionNumbers | ContourNumbers | LinkageNumbers | "
-                  "EtveNumbers | SpindleDistortionNumbers | AxisDistortionNumbers"),
+                  "EtveNumbers | SpindleDistortionNumbers | AxisDistortionNumbers | LocationDistortionNumbers"),
           "Results as numbers and arrays in mm and rad; the class depends on the test.")
       .def_ro("refused", &Evaluation::refused,
               "Why the figures are not those requested; empty if they are. An exceeded tolerance is no reason.")

@@ -7,32 +7,10 @@
 
 #include "bindings/arrays.h"
 #include "bindings/evaluate/evaluations.h"
+#include "bindings/evaluate/thermal_parts.h"
 
 namespace abbe::python {
 namespace {
-
-using OptionNumbers = std::map<std::string, double>;
-
-/// What a sensor read, with the unit of its values.
-struct SensorSeries {
-  TimeSeries series;
-  const char* unit;
-};
-
-SensorSeries series_of(const ThermalSensor& sensor) { return {sensor.series, sensor.is_angle ? "rad" : "mm"}; }
-
-/// The numbers of a test by the names of the options of the command.
-template <class Test>
-void enter_numbers(const OptionNumbers& given, std::span<const TestNumber<Test>> known, Test& test) {
-  for (const auto& [name, value] : given) {
-    const TestNumber<Test>& number = entry_named("options", name, known);
-    if (!(value >= number.from && value <= number.to)) {
-      throw InputError({.field = "options"}, fmt::format("{} is {}", name, value),
-                       fmt::format("a number from {:g} to {:g}", number.from, number.to));
-    }
-    test.*number.value = value * number.unit;
-  }
-}
 
 template <class Test, class Read, class Parse>
 Evaluation thermal_test(const ReadingsArgument& argument, const OptionNumbers& options,
@@ -160,7 +138,7 @@ void bind_thermal_results(nb::module_& module) {
           "sensors",
           [](const SpindleDistortion& d) {
             std::vector<SensorSeries> all;
-            for (const SpindleSensor& one : d.sensors) all.push_back(series_of(one.sensor));
+            for (const WarmingSensor& one : d.sensors) all.push_back(series_of(one.sensor));
             return all;
           },
           "SensorSeries of the displacements and angles, and of tilts from two planes.")
@@ -168,7 +146,7 @@ void bind_thermal_results(nb::module_& module) {
           "warming",
           [](const SpindleDistortion& d) {
             std::vector<FirstOrderResponse> all;
-            for (const SpindleSensor& one : d.sensors) all.push_back(one.warming);
+            for (const WarmingSensor& one : d.sensors) all.push_back(one.warming);
             return all;
           },
           "FirstOrderResponse of each sensor while the spindle rotates.")
@@ -176,7 +154,7 @@ void bind_thermal_results(nb::module_& module) {
           "cooling",
           [](const SpindleDistortion& d) {
             std::vector<FirstOrderResponse> all;
-            for (const SpindleSensor& one : d.sensors) all.push_back(one.recovery);
+            for (const WarmingSensor& one : d.sensors) all.push_back(one.recovery);
             return all;
           },
           "FirstOrderResponse of each sensor after the stop.")

@@ -126,6 +126,7 @@ nb::object python_of_json(const std::string& text) {
 void bind_studies(nb::module_& module) {
   bind_study_checks(module);
   bind_verified_readings(module);
+  bind_location_distortion(module);
   nb::class_<Study> bound(module, "StudyData", "A study that has been checked against its machine; behind abbe.Study.");
   bound.def_static("read", &read_study, nb::arg("path"))
       .def_static(
@@ -153,6 +154,7 @@ void bind_studies(nb::module_& module) {
       .def("plan", &plan, nb::arg("progress").none());
   add_study_check(bound);
   add_study_verification(bound);
+  add_location_distortion(bound);
 }
 
 }  // namespace abbe::python

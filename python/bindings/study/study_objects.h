@@ -44,6 +44,8 @@ std::shared_ptr<const Study> study_with_data(const Study& study, const std::map<
 /// Adds methods that look at the readings of a study without identifying anything.
 void add_study_check(nb::class_<Study>& bound);
 void add_study_verification(nb::class_<Study>& bound);
+/// Adds the thermal test of location errors.
+void add_location_distortion(nb::class_<Study>& bound);
 
 /// The errors that a study identified, as in its errors file. @throws InputError if there are none
 MachineErrors identified_errors(const StudyOutcome& outcome);

@@ -9,6 +9,7 @@
 #include "abbe/verify/parts/contour_sections.h"
 #include "abbe/verify/thermal/axis_distortion.h"
 #include "abbe/verify/thermal/etve.h"
+#include "abbe/verify/thermal/location_distortion.h"
 #include "abbe/verify/thermal/spindle_distortion.h"
 
 namespace abbe {
@@ -54,6 +55,10 @@ CustomerReport customer_etve(const ReportFacts& facts, const EvaluationReport& n
 /// Thermal distortion by a rotating spindle, with the displacements and angles over time.
 CustomerReport customer_spindle_distortion(const ReportFacts& facts, const EvaluationReport& now,
                                            const SpindleDistortion& distortion, const EvaluationReport* before);
+
+/// Thermal distortion of location errors, with these over time.
+CustomerReport customer_location_distortion(const ReportFacts& facts, const EvaluationReport& now,
+                                            const LocationDistortion& distortion, const EvaluationReport* before);
 
 /// Thermal distortion by a moving linear axis, with the changes at the targets over time.
 CustomerReport customer_axis_distortion(const ReportFacts& facts, const EvaluationReport& now,

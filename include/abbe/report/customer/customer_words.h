@@ -125,6 +125,7 @@ enum class CustomerWord {
   etve_test,
   spindle_distortion_test,
   axis_distortion_test,
+  location_distortion_test,
   clockwise,
   counterclockwise,
   angle,
@@ -158,9 +159,12 @@ enum class CustomerWord {
   displacement,
   changes_over_time,  ///< caption of a table
   stop,               ///< of a spindle
-  first_order,        ///< response
-  duration_fact,      ///< a condition, like those that follow; {}: text
+  heating_stop,
+  first_order,    ///< response
+  duration_fact,  ///< a condition, like those that follow; {}: text
   rotation_fact,
+  heating_fact,
+  cycles_fact,
   cooling_fact,
   targets_fact,
   count_  ///< number of words

@@ -49,9 +49,9 @@
 namespace abbe {
 
 /// One of the tests that there are.
-using TestToEvaluate =
-    std::variant<PositioningTest, DiagonalsTest, CircularTest, RotationTest, StraightnessTest, SquarenessTest,
-                 SectionsTest, ContourPointsTest, LinkageTest, EtveTest, SpindleDistortionTest, AxisDistortionTest>;
+using TestToEvaluate = std::variant<PositioningTest, DiagonalsTest, CircularTest, RotationTest, StraightnessTest,
+                                    SquarenessTest, SectionsTest, ContourPointsTest, LinkageTest, EtveTest,
+                                    SpindleDistortionTest, AxisDistortionTest, LocationDistortionTest>;
 
 /// Readings of a test, and the tolerances of its figures.
 ///
@@ -64,9 +64,10 @@ struct EvaluationRequest {
 };
 
 /// The numerical results of a test, from which its report is made; mm and rad.
-using EvaluatedNumbers = std::variant<PositioningEvaluation, DiagonalsEvaluation, CircularEvaluation, RotationResult,
-                                      StraightnessEvaluation, Squareness, SectionsEvaluation, ContourPointsEvaluation,
-                                      LinkageEvaluation, EtveEvaluation, SpindleDistortion, AxisDistortion>;
+using EvaluatedNumbers =
+    std::variant<PositioningEvaluation, DiagonalsEvaluation, CircularEvaluation, RotationResult, StraightnessEvaluation,
+                 Squareness, SectionsEvaluation, ContourPointsEvaluation, LinkageEvaluation, EtveEvaluation,
+                 SpindleDistortion, AxisDistortion, LocationDistortion>;
 
 /// What the readings say. It needs nothing of the request that it answers.
 struct Evaluation {

@@ -4,9 +4,12 @@
 #include <span>
 
 #include "abbe/formats/evaluations/evaluation_thermal_file.h"
+#include "abbe/formats/study/study.h"
+#include "abbe/study/campaign.h"
 #include "abbe/study/evaluations/test_number.h"
 #include "abbe/verify/thermal/axis_distortion.h"
 #include "abbe/verify/thermal/etve.h"
+#include "abbe/verify/thermal/location_distortion.h"
 #include "abbe/verify/thermal/spindle_distortion.h"
 
 namespace abbe {
@@ -55,5 +58,20 @@ struct AxisDistortionTest {
   double angle_uncertainty = 0;
 };
 std::span<const TestNumber<AxisDistortionTest>> axis_distortion_numbers();
+
+/// Thermal distortion of location errors: the readings of a study whose poses are measured again and again, by any
+/// instrument, while the machine is heated and cools.
+///
+/// Refused: what location_errors_over_time() refuses, a stop that is not after the start, times outside the cycles. A
+/// change that is not one of location errors alone makes Evaluation::refused.
+struct LocationDistortionTest {
+  Study study;
+  Campaign campaign;          ///< gather_readings() of the study; its readings have times
+  double cycle = kNotStated;  ///< from one cycle to the next; else a pause begins a cycle
+  double pause = kNotStated;  ///< a longer time without a reading begins a cycle; else found from the times
+  double start = kNotStated;  ///< of the heating, as the readings count their time; else the first cycle
+  double stop = kNotStated;   ///< else the last cycle: there is no cooling
+};
+std::span<const TestNumber<LocationDistortionTest>> location_distortion_numbers();
 
 }  // namespace abbe

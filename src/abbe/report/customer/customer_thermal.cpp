@@ -29,8 +29,14 @@ ShownSensor shown_sensor(const TimeSeries& series, double origin, bool is_angle,
   return {{&series, origin, is_angle ? 1e6 : 1e3, name, std::move(responses)}, is_angle};
 }
 
+/// A line at a time of a drawing, and what it says.
+struct ShownMark {
+  std::optional<double> time{};
+  Word words = Word::stop;
+};
+
 /// Drawings of displacements and of angles, and a table of both.
-void add_sensors(const std::vector<ShownSensor>& sensors, const ShownTime& time, const std::optional<double>& mark,
+void add_sensors(const std::vector<ShownSensor>& sensors, const ShownTime& time, const ShownMark& mark,
                  CustomerReport& report) {
   const ReportLanguage language = report.facts.language;
   for (const bool is_angle : {false, true}) {
@@ -42,8 +48,9 @@ void add_sensors(const std::vector<ShownSensor>& sensors, const ShownTime& time,
     const Word value = is_angle ? Word::angle : Word::displacement;
     const ThermalPlotWords words = {report.subject, local_word_with_unit(Word::time, time.name, language),
                                     local_word_with_unit(value, is_angle ? "µrad" : "µm", language),
-                                    local_word(Word::first_order, language), local_word(Word::stop, language)};
-    report.drawings.push_back({local_word(value, language), thermal_plot(curves, time, words, mark).picture().wide});
+                                    local_word(Word::first_order, language), local_word(mark.words, language)};
+    report.drawings.push_back(
+        {local_word(value, language), thermal_plot(curves, time, words, mark.time).picture().wide});
   }
   for (std::size_t first = 0; first < sensors.size(); first += kMostSensorsInTable) {
     const std::size_t last = std::min(sensors.size(), first + kMostSensorsInTable);
@@ -68,6 +75,18 @@ void add_sensors(const std::vector<ShownSensor>& sensors, const ShownTime& time,
   }
 }
 
+void add_warming(const std::vector<WarmingSensor>& sensors, const WarmingRun& run, Word stop, CustomerReport& report) {
+  std::vector<ShownSensor> shown;
+  for (const WarmingSensor& one : sensors) {
+    const TimeSeries& series = one.sensor.series;
+    shown.push_back(
+        shown_sensor(series, one.value_at_start, one.sensor.is_angle, series.name, {one.warming, one.recovery}));
+  }
+  ShownMark mark{.words = stop};
+  if (run.has_cooling()) mark.time = run.stop;
+  add_sensors(shown, shown_time(run.start, run.end), mark, report);
+}
+
 }  // namespace
 
 CustomerReport customer_etve(const ReportFacts& facts, const EvaluationReport& now, const EtveEvaluation& evaluation,
@@ -79,7 +98,7 @@ CustomerReport customer_etve(const ReportFacts& facts, const EvaluationReport& n
     const TimeSeries& series = one.sensor.series;
     sensors.push_back(shown_sensor(series, series.values.front(), one.sensor.is_angle, series.name));
   }
-  add_sensors(sensors, shown_time(evaluation.from, evaluation.to), std::nullopt, report);
+  add_sensors(sensors, shown_time(evaluation.from, evaluation.to), {}, report);
   return report;
 }
 
@@ -88,16 +107,17 @@ CustomerReport customer_spindle_distortion(const ReportFacts& facts, const Evalu
   CustomerReport report = begun_test_report(facts, now, before, Word::spindle_distortion_test);
   add_fact(now, "rotation", Word::rotation_fact, report);
   add_fact(now, "cooling", Word::cooling_fact, report);
-  std::vector<ShownSensor> sensors;
-  for (const SpindleSensor& one : distortion.sensors) {
-    const TimeSeries& series = one.sensor.series;
-    sensors.push_back(
-        shown_sensor(series, one.value_at_start, one.sensor.is_angle, series.name, {one.warming, one.recovery}));
-  }
-  const SpindleRun& run = distortion.run;
-  std::optional<double> mark;
-  if (run.has_cooling()) mark = run.stop;
-  add_sensors(sensors, shown_time(run.start, run.end), mark, report);
+  add_warming(distortion.sensors, distortion.run, Word::stop, report);
+  return report;
+}
+
+CustomerReport customer_location_distortion(const ReportFacts& facts, const EvaluationReport& now,
+                                            const LocationDistortion& distortion, const EvaluationReport* before) {
+  CustomerReport report = begun_test_report(facts, now, before, Word::location_distortion_test);
+  add_fact(now, "heating", Word::heating_fact, report);
+  add_fact(now, "cooling", Word::cooling_fact, report);
+  add_fact(now, "cycles", Word::cycles_fact, report);
+  add_warming(distortion.locations, distortion.run, Word::heating_stop, report);
   return report;
 }
 
@@ -120,7 +140,7 @@ CustomerReport customer_axis_distortion(const ReportFacts& facts, const Evaluati
   for (const AxisExpansion& one : distortion.expansions) {
     sensors.push_back(shown_sensor(one.distance, 0, false, "L" + one.approach, {one.response}));
   }
-  add_sensors(sensors, shown_time(distortion.from, distortion.to), std::nullopt, report);
+  add_sensors(sensors, shown_time(distortion.from, distortion.to), {}, report);
   return report;
 }
 

@@ -77,6 +77,9 @@ struct ReportMaker {
   CustomerReport operator()(const AxisDistortion& found) const {
     return customer_axis_distortion(facts, now.report, found, report_before());
   }
+  CustomerReport operator()(const LocationDistortion& found) const {
+    return customer_location_distortion(facts, now.report, found, report_before());
+  }
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ Evaluation evaluated(const LinkageTest& test, const std::string& file);
 Evaluation evaluated(const EtveTest& test, const std::string& file);
 Evaluation evaluated(const SpindleDistortionTest& test, const std::string& file);
 Evaluation evaluated(const AxisDistortionTest& test, const std::string& file);
+Evaluation evaluated(const LocationDistortionTest& test, const std::string& file);
 
 /// @throws InputError if there are none
 void require_readings(bool there_are, const std::string& file);

@@ -86,7 +86,7 @@ bool lacks_distance(double plane_distance, const ThermalReadings& readings) {
 }
 
 /// The times of rotation, as stated or as read.
-SpindleRun run_of(const SpindleDistortionTest& test, const std::string& file) {
+WarmingRun run_of(const SpindleDistortionTest& test, const std::string& file) {
   double first = std::numeric_limits<double>::infinity(), last = -first;
   for (const auto* const all : {&test.readings.displacements, &test.readings.angles}) {
     for (const TimeSeries& series : *all) {
@@ -94,7 +94,7 @@ SpindleRun run_of(const SpindleDistortionTest& test, const std::string& file) {
       last = std::max(last, series.to());
     }
   }
-  const SpindleRun run{is_stated(test.start) ? test.start : first, is_stated(test.stop) ? test.stop : last, last};
+  const WarmingRun run{is_stated(test.start) ? test.start : first, is_stated(test.stop) ? test.stop : last, last};
   if (!(run.stop > run.start)) {
     throw InputError(
         {.file = file, .field = is_stated(test.stop) ? "--stop-min" : "--start-min"},

@@ -92,11 +92,11 @@ ThermalReadings spindle_readings() {
 
 TEST(SpindleDistortionTest, WarmingAndCoolingAreToldApart) {
   const ThermalReadings readings = spindle_readings();
-  const SpindleRun run{600, 15000, readings.displacements[0].to()};
+  const WarmingRun run{600, 15000, readings.displacements[0].to()};
   EXPECT_EQ(unread_sensor(readings, run), "");
   const SpindleDistortion found = evaluate_spindle_distortion(readings, run, {}, 0);
   ASSERT_EQ(found.sensors.size(), 1U);
-  const SpindleSensor& z = found.sensors[0];
+  const WarmingSensor& z = found.sensors[0];
   EXPECT_NEAR(z.value_at_start, 0.5, 1e-12);
   EXPECT_NEAR(z.first_hour.value, 0.03 * (1 - std::exp(-1.5)), 1e-12);
   EXPECT_NEAR(z.running.value, 0.03 * (1 - std::exp(-6)), 1e-12);

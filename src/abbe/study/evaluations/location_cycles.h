@@ -1,0 +1,24 @@
+#pragma once
+
+// Internal to study: a campaign whose poses are read again and again while the machine warms.
+#include <string>
+
+#include "abbe/formats/study/study.h"
+#include "abbe/study/campaign.h"
+#include "abbe/study/evaluations/cycle_readings.h"
+#include "abbe/verify/thermal/location_distortion.h"
+
+namespace abbe {
+
+/// Identifies the whole campaign, then in every cycle its location errors and what is open in its set-ups.
+///
+/// Held at the result of the whole campaign: all other errors of the machine, location errors that a convention fixes,
+/// and what is known of a set-up beforehand. With the same poses in every cycle what is held has no influence on
+/// changes, to first order.
+/// @param file  of the study, for messages
+/// @throws InputError for readings without times, a set-up that drifts, errors with measured states, no location
+///         errors, or fewer than two cycles that determine them
+LocationErrorsOverTime location_errors_over_time(const Study& study, const Campaign& campaign,
+                                                 const CycleChoice& choice, const std::string& file);
+
+}  // namespace abbe
