@@ -173,7 +173,8 @@ bench:
 	@.ci/set-up bench
 	@.ci/build bench
 	@for program in closest_point compensated_inverse fits forward_pose five_instruments identification identification_memory nc_program planning \
-	  polygon_trace program_correction read_csv read_mesh registration runtime_call scan_points; do \
+	  polygon_trace program_correction read_csv read_mesh registration roofline runtime_call scan_points \
+	  'compensated_inverse --avx2' 'forward_pose --avx2' 'identification --avx2 --quick' 'roofline --avx2'; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
 	@if [ "$(ABBE_PYTHON)" = ON ] && [ -x build/python-venv/bin/python ]; then $(MAKE) --no-print-directory bench-python; fi
 

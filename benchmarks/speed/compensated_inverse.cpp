@@ -11,6 +11,7 @@
 #include "abbe/geometry/parallel_blocks.h"
 #include "eigen_chain.h"
 #include "fastest.h"
+#include "instruction_set.h"
 
 namespace abbe::benchmarks {
 namespace {
@@ -113,6 +114,7 @@ void correct_two_cores(benchmark::State& state) {
 }  // namespace
 
 int run(int argc, char** argv) {
+  take_avx2(argc, argv);
   initialize(argc, argv);
   benchmark::RegisterBenchmark("eigen_newton", &eigen_newton)->Repetitions(9)->MinTime(0.05);
   benchmark::RegisterBenchmark("correct_one_core", &correct_one_core)->Repetitions(9)->MinTime(0.05);
