@@ -2,7 +2,6 @@
 
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,7 +10,7 @@
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/file_unit.h"
 #include "abbe/formats/text/input_error.h"
-#include "abbe/formats/text/number_text.h"
+#include "abbe/formats/text/number_list.h"
 #include "abbe/study/fitted_points.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
@@ -40,33 +39,13 @@ std::vector<std::string> names(const std::map<std::string, Value>& all) {
   return result;
 }
 
-/// Numbers with commas between them. @throws InputError
-std::vector<double> numbers(const std::string& text, const std::string& option, const std::string& expected) {
-  std::vector<double> values;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    values.push_back(0);
-    if (parse_number(part, 0, values.back()) != NumberProblem::none) {
-      throw InputError({.field = option}, fmt::format("'{}' is not a number", part.substr(0, 40)), expected);
-    }
-  }
-  return values;
-}
-
 std::optional<Eigen::Vector3d> held_direction(const FitCommand& command) {
   if (command.direction.empty()) return {};
-  const char* const expected = "three numbers, not all zero: 0,0,1";
-  const std::vector<double> d = numbers(command.direction, "--fixed-direction", expected);
-  if (d.size() != 3) {
-    throw InputError({.field = "--fixed-direction"},
-                     fmt::format("'{}' is not a direction", command.direction.substr(0, 60)), expected);
-  }
-  return Eigen::Vector3d(d[0], d[1], d[2]);
+  return parse_direction(command.direction, "--fixed-direction");
 }
 
 std::vector<double> held_radii(const FitCommand& command, std::size_t count) {
-  if (command.radii.empty()) return {};
-  return numbers(
+  return parse_number_list(
       command.radii, "--fixed-radius-mm",
       count == 1 ? std::string(kOneRadius) : fmt::format("{} numbers of mm above zero, one per file", count));
 }
