@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
+#include "abbe/study/shared_work.h"
 #include "options.h"
-#include "process_group.h"
 
 namespace abbe {
 

@@ -10,6 +10,8 @@
 #include "abbe/study/run_study.h"
 #include "abbe/study/summary.h"
 #include "command.h"
+#include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 #include "study_outcome.h"
@@ -33,26 +35,29 @@ void add_identify_command(CommandLine& line) {
   command->add_flag("--accept-misfit", options->accept_misfit,
                     "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
-    line.run = [options]() -> int {
+    line.shares_work = true;
+    line.run = [options, processes = line.processes]() -> int {
       const Study study = read_study(options->study);
       if (!study.identification)
         throw InputError({.file = options->study}, "nothing to identify", "an [identify] table");
       if (!options->output.empty()) refuse_existing_output(covariance_beside(options->output));
       StepProgress progress;
+      SharedWork work(processes, options->output, tell_sentence);
       const StudyResult result =
           run_study(study, {.accept_misfit = options->accept_misfit,
                             .map = false,
-                            .progress = [&](StudyStep step, std::size_t done, std::size_t total) {
-                              progress.show(step_words(study, step), done, total);
-                            }});
+                            .progress = [&](StudyStep step, std::size_t done,
+                                            std::size_t total) { progress.show(step_words(study, step), done, total); },
+                            .summation = work.summation(study),
+                            .work = work.driver()});
       progress.end();
-      if (result.usable()) {
-        if (!options->output.empty()) {
-          ErrorsFile file = identified_errors_file(study, result);
-          file.provenance = {{"study", study.name}, {"method", "abbe identify"}};
-          write_errors(options->output, study.machine, file);
-        }
+      if (!work.is_first()) return kDone;
+      if (result.usable() && !options->output.empty()) {
+        ErrorsFile file = identified_errors_file(study, result);
+        file.provenance = {{"study", study.name}, {"method", "abbe identify"}};
+        write_errors(options->output, study.machine, file);
       }
+      work.done();
       if (options->json) {
         nlohmann::ordered_json json = study_summary(study, result);
         if (result.usable())

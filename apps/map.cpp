@@ -15,7 +15,9 @@
 #include "abbe/study/errors_map.h"
 #include "command.h"
 #include "errors_for_use.h"
+#include "exit_code.h"
 #include "machine_options.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 #include "uncovered_poses.h"
@@ -49,13 +51,16 @@ ErrorsMapRequest request_of_map(const MapOptions& options) {
   return request;
 }
 
-int run_map(const MapOptions& options) {
+int run_map(const MapOptions& options, ProcessGroup* processes) {
   const ErrorsMapRequest request = request_of_map(options);
   Progress progress("mapping the volumetric error");
-  const ErrorsMap map = map_errors(request, {.progress = progress.callback()});
+  SharedWork work(processes, options.outputs.empty() ? "" : options.outputs.front(), tell_sentence);
+  const ErrorsMap map = map_errors(request, {.progress = progress.callback(), .work = work.driver()});
+  if (!work.is_first()) return kDone;
   const MapData data = errors_map_data(map);
   for (const std::string& output : options.outputs) require_map_name(output, data);
   for (const std::string& output : options.outputs) write_file_atomically(output, map_text(output, data));
+  work.done();
   if (options.json) {
     fmt::print("{}", json_text(errors_map_json(map)));
   } else {
@@ -97,7 +102,10 @@ void add_map_command(CommandLine& line) {
   command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
   command->add_output_file("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");
   command->add_flag("--json", options->json, "Print JSON for programs");
-  command->callback([&line, options] { line.run = [options]() -> int { return run_map(*options); }; });
+  command->callback([&line, options] {
+    line.shares_work = true;
+    line.run = [options, processes = line.processes]() -> int { return run_map(*options, processes); };
+  });
 }
 
 }  // namespace abbe

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +17,8 @@ template <typename... Values>
 void tell(fmt::format_string<Values...> format, Values&&... values) {
   tell_text(fmt::format(format, std::forward<Values>(values)...));
 }
+
+inline void tell_sentence(const std::string& sentence) { tell("abbe: {}\n", sentence); }
 
 /// Writes to standard error as it is, for what a terminal is to obey: progress that is drawn over.
 void draw(std::string_view text);

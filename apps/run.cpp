@@ -49,10 +49,10 @@ void add_run_command(CommandLine& line) {
     line.shares_work = true;
     line.run = [options, processes = line.processes]() -> int {
       Study study = read_study(options->study);
-      if (processes != nullptr && !processes->is_first()) return processes->serve(study);
       if (!options->output.empty()) study.output = options->output;
       if (!options->before.empty()) study.report.before = options->before;
-      check_results_folder(study.output);
+      SharedWork work(processes, study.output.string(), tell_sentence);
+      if (work.is_first()) check_results_folder(study.output);
       if (!options->qif.empty()) check_qif_name(options->qif);
       if ((options->pdf || !options->qif.empty()) && !study.report.facts) {
         throw InputError({.file = options->study, .field = "report"}, "states no facts of a customer report",
@@ -63,13 +63,16 @@ void add_run_command(CommandLine& line) {
           run_study(study, {.accept_misfit = options->accept_misfit,
                             .progress = [&](StudyStep step, std::size_t done,
                                             std::size_t total) { progress.show(step_words(study, step), done, total); },
-                            .summation = processes == nullptr ? Summation() : processes->summation(study)});
+                            .summation = work.summation(study),
+                            .work = work.driver()});
       progress.end();
+      if (!work.is_first()) return kDone;
       PrintedPage printed;
       std::optional<CustomerReport> customer;
       if (study.report.facts) customer = study_customer_report(study, result);
       if (options->pdf) printed = printed_customer_report(*customer);
       const std::string summary = write_results(study, result, printed.pdf);
+      work.done();
       if (!options->qif.empty()) write_file_atomically(options->qif, study_qif_results(study, result));
       if (options->json) {
         fmt::print("{}", summary);

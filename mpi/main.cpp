@@ -1,5 +1,5 @@
-// abbe-mpi: the command `abbe` in several processes, which mpirun starts. The first does the work and writes; in
-// `abbe run` the others sum readings for it.
+// abbe-mpi: the command `abbe` in several processes, which mpirun starts. Subcommands that
+// share their work run in all of them, others in the first one alone. The first one writes and prints.
 #include <unistd.h>
 
 #include <cstdio>
@@ -48,6 +48,6 @@ int main(int argc, char** argv) {
   if (group.is_first()) return abbe::command_main(argc, argv, add);
   KeptMessages messages;
   abbe::command_main(argc, argv, add);
-  group.refuse(messages.text());
+  group.leave(messages.text());
   return 0;
 }

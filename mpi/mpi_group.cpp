@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <mpi.h>
 
+#include <algorithm>
 #include <chrono>
 #include <climits>
 #include <stdexcept>
@@ -11,37 +12,17 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/stopped.h"
 #include "abbe/study/study_steps.h"
-#include "exit_code.h"
 
 namespace abbe {
 namespace {
 
-enum Tag { kRequest = 1, kEnd = 2, kSum = 3, kFault = 4 };
+constexpr std::size_t kLongestComplaint = 1000;
 
-/// A range behind the bytes of a request: two numbers of 8 bytes, little-endian.
-constexpr std::size_t kRangeBytes = 16;
-
-void append_range(PieceRange range, std::vector<std::byte>& bytes) {
-  for (const std::size_t bound : {range.first, range.last}) {
-    for (int k = 0; k < 8; ++k) bytes.push_back(static_cast<std::byte>(bound >> (8 * k)));
-  }
-}
-
-PieceRange range_at_end(const std::vector<std::byte>& bytes) {
-  if (bytes.size() < kRangeBytes) throw SumError("a request of a process is cut off");
-  const std::byte* const at = bytes.data() + bytes.size() - kRangeBytes;
-  PieceRange range;
-  for (int k = 0; k < 8; ++k) {
-    range.first |= static_cast<std::size_t>(at[k]) << (8 * k);
-    range.last |= static_cast<std::size_t>(at[8 + k]) << (8 * k);
-  }
-  return range;
-}
-
-std::vector<std::byte> bytes_of(const std::string& text) {
-  const auto* const first = reinterpret_cast<const std::byte*>(text.data());
-  return {first, first + text.size()};
-}
+/// The end of the first process ends the command of another one.
+class FirstHasEnded : public std::runtime_error {
+ public:
+  FirstHasEnded() : std::runtime_error("the first process has ended") {}
+};
 
 }  // namespace
 
@@ -50,15 +31,15 @@ MpiGroup::MpiGroup(int* argc, char*** argv) {
   MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
-  is_awaited_.assign(static_cast<std::size_t>(size_), false);
+  has_left_.assign(static_cast<std::size_t>(size_), false);
 }
 
 MpiGroup::~MpiGroup() {
   if (is_first()) {
-    // A process that still sums is not told before it has answered.
+    for (int i = 1; i < size_; ++i) send(i, kEnd, {});
+    // What they are sending is taken, or they would wait for that.
     for (int i = 1; i < size_; ++i) {
-      if (is_awaited_[static_cast<std::size_t>(i)]) receive(i);
-      send(i, kEnd, {});
+      while (!has_left_[static_cast<std::size_t>(i)]) receive(i);
     }
   }
   MPI_Finalize();
@@ -72,8 +53,16 @@ void MpiGroup::send(int to, int tag, const std::vector<std::byte>& bytes) {
   MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD);
 }
 
+std::optional<MpiGroup::Message> MpiGroup::look() {
+  MPI_Status status;
+  int has_come = 0;
+  MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &has_come, &status);
+  if (has_come == 0) return {};
+  return receive(status.MPI_SOURCE);
+}
+
 MpiGroup::Message MpiGroup::receive(int from, const std::stop_token& stop) {
-  // MPI_Recv() would keep a processor busy, which the first process needs between two requests.
+  // MPI_Recv() would keep a processor busy, which a computing process needs.
   using namespace std::chrono_literals;
   constexpr int kBusyLooks = 2000;
   MPI_Status status;
@@ -90,9 +79,26 @@ MpiGroup::Message MpiGroup::receive(int from, const std::stop_token& stop) {
   }
   int count = 0;
   MPI_Get_count(&status, MPI_BYTE, &count);
-  Message message{status.MPI_TAG, std::vector<std::byte>(static_cast<std::size_t>(count))};
+  Message message{from, status.MPI_TAG, std::vector<std::byte>(static_cast<std::size_t>(count))};
   MPI_Recv(message.bytes.data(), count, MPI_BYTE, from, message.tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  if (message.tag == kLeft) has_left_[static_cast<std::size_t>(from)] = true;
   return message;
+}
+
+void MpiGroup::end() {
+  ended_ = true;
+  throw FirstHasEnded();
+}
+
+void MpiGroup::fail_left(const Message& message) const {
+  std::string why(reinterpret_cast<const char*>(message.bytes.data()), message.bytes.size());
+  if (why.empty()) why = "has ended before the others";
+  throw InputError({.file = name_of(message.from)}, why, "the same program and the same files in every process");
+}
+
+void MpiGroup::fail_other_work(int rank) const {
+  throw InputError({.file = name_of(rank)}, "does work of another problem",
+                   "the same program and the same files in every process");
 }
 
 std::string MpiGroup::name_of(int rank) const { return fmt::format("process {} of {}", rank + 1, size_); }
@@ -108,58 +114,36 @@ Summation MpiGroup::summation(const Study& study) {
 }
 
 SumOfReadings MpiGroup::sum(PieceSummer& summer, const SumRequest& request, int threads, const std::stop_token& stop) {
-  const auto processes = static_cast<std::size_t>(size_);
-  const std::vector<std::byte> bytes = to_bytes(request);
-  for (int i = 1; i < size_; ++i) {
-    std::vector<std::byte> own = bytes;
-    append_range(share_of_pieces(request.pieces, static_cast<std::size_t>(i), processes), own);
-    send(i, kRequest, own);
-    is_awaited_[static_cast<std::size_t>(i)] = true;
+  const auto share = [&](int rank) {
+    return share_of_pieces(request.pieces, static_cast<std::size_t>(rank), static_cast<std::size_t>(size_));
+  };
+  SumOfReadings own = summer.sum(request, share(rank_), {.threads = threads, .stop = stop});
+  if (!is_first()) {
+    send(0, kSum, to_bytes(own));
+    const Message message = receive(0, stop);
+    if (message.tag == kEnd) end();
+    return sum_from_bytes(message.bytes);
   }
   std::vector<SumOfReadings> parts;
-  parts.push_back(
-      summer.sum(request, share_of_pieces(request.pieces, 0, processes), {.threads = threads, .stop = stop}));
+  parts.push_back(std::move(own));
   for (int i = 1; i < size_; ++i) {
-    const Message message = receive(i, stop);
-    is_awaited_[static_cast<std::size_t>(i)] = false;
-    if (message.tag == kFault) {
-      throw InputError({.file = name_of(i)},
-                       std::string(reinterpret_cast<const char*>(message.bytes.data()), message.bytes.size()),
-                       "the same program and the same files in every process");
-    }
+    Message message = receive(i, stop);
+    // What it asked before it was told that numbered work is done.
+    while (message.tag == kAsk && works_ > 0) message = receive(i, stop);
+    if (message.tag == kLeft) fail_left(message);
+    if (message.tag != kSum) fail_other_work(i);
     parts.push_back(sum_from_bytes(message.bytes));
   }
-  return merge_all(std::move(parts));
+  SumOfReadings all = merge_all(std::move(parts));
+  const std::vector<std::byte> bytes = to_bytes(all);
+  for (int i = 1; i < size_; ++i) send(i, kSum, bytes);
+  return all;
 }
 
-int MpiGroup::serve(const Study& study) {
-  if (!study.identification) return kDone;  // nothing is summed
-  PieceSummer summer(prepared_problem(study));
-  while (!ended_) {
-    const Message message = receive(0);
-    if (message.tag == kEnd) {
-      ended_ = true;
-      break;
-    }
-    try {
-      const PieceRange range = range_at_end(message.bytes);
-      const std::span<const std::byte> request(message.bytes.data(), message.bytes.size() - kRangeBytes);
-      send(0, kSum, to_bytes(summer.sum(request_from_bytes(request), range, {.threads = study.threads})));
-    } catch (const std::exception& error) {
-      send(0, kFault, bytes_of(error.what()));
-    }
-  }
-  return kDone;
-}
-
-void MpiGroup::refuse(const std::string& why) {
-  while (!ended_) {
-    if (receive(0).tag == kEnd) {
-      ended_ = true;
-    } else {
-      send(0, kFault, bytes_of(why));
-    }
-  }
+void MpiGroup::leave(const std::string& why) {
+  const auto* const first = reinterpret_cast<const std::byte*>(why.data());
+  send(0, kLeft, {first, first + std::min(why.size(), kLongestComplaint)});
+  while (!ended_) ended_ = receive(0).tag == kEnd;
 }
 
 }  // namespace abbe

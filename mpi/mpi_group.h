@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "process_group.h"
+#include "abbe/study/process_group.h"
 
 namespace abbe {
 
 /// The processes of MPI_COMM_WORLD. One object for a process, from MPI_Init() to MPI_Finalize().
 ///
-/// The first process sends a request and a range of pieces to each of the others, sums the first range itself, and
-/// takes the sums; what it adds up does not depend on their number (abbe/identify/sums/sum_of_readings.h). The readings
-/// are not sent: every process reads or simulates them.
+/// Every process does what the command says from the same files. Sums over readings: each process sums a range of
+/// pieces, the first one adds them all up and sends the sums to the others; what it adds up does not depend on their
+/// number (abbe/identify/sums/sum_of_readings.h). Numbered work: the first process hands out blocks and takes results.
 class MpiGroup : public ProcessGroup {
  public:
   MpiGroup(int* argc, char*** argv);
@@ -23,27 +23,38 @@ class MpiGroup : public ProcessGroup {
   ~MpiGroup() override;
 
   bool is_first() const override { return rank_ == 0; }
-  int serve(const Study& study) override;
   Summation summation(const Study& study) override;
+  void work(const NumberedWork& work) override;
 
-  /// Of all but the first: answers every request with this text, until the first process ends.
-  void refuse(const std::string& why);
+  /// Of all but the first, when its command has ended: waits for the end of the first process, which fails if it still
+  /// counted on this one.
+  /// @param why  what the command has complained about; may be empty
+  void leave(const std::string& why);
 
  private:
+  class FirstOfWork;
+  class OtherOfWork;
+  enum Tag { kSum = 1, kAsk, kHandedOut, kResults, kWorkDone, kLeft, kEnd };
+
   /// What has come from a process.
   struct Message {
-    int tag = 0;
+    int from = 0, tag = 0;
     std::vector<std::byte> bytes;
   };
 
   SumOfReadings sum(PieceSummer& summer, const SumRequest& request, int threads, const std::stop_token& stop);
   void send(int to, int tag, const std::vector<std::byte>& bytes);
   Message receive(int from, const std::stop_token& stop = {});
+  std::optional<Message> look();  ///< a message from anybody, if there is one
+  [[noreturn]] void end();        ///< of all but the first: the first process has ended
+  [[noreturn]] void fail_left(const Message& message) const;
+  [[noreturn]] void fail_other_work(int rank) const;
   std::string name_of(int rank) const;
 
   int rank_ = 0, size_ = 1;
-  bool ended_ = false;              // the first process has said so
-  std::vector<bool> is_awaited_{};  // [size_]: has a request that it has not answered
+  bool ended_ = false;            // the first process has said so
+  std::uint64_t works_ = 0;       // lists of numbered work that were begun
+  std::vector<bool> has_left_{};  // [size_]: has ended its command
 };
 
 }  // namespace abbe

@@ -30,11 +30,12 @@ int become_one_of_several(char* const* argv) {
   try {
     const std::filesystem::path program = find_companion_program(kMpiProgram);
     if (program.empty()) {
-      throw InputError({.file = kMpiProgram.name},
-                       fmt::format("mpirun has started {} processes, and this program, which shares the work, is missing",
-                                   processes),
-                       fmt::format("it at {} (built where CMake finds MPI), or its name in the environment variable {}",
-                                   path_beside_this_program(kMpiProgram).string(), kMpiProgram.variable));
+      throw InputError(
+          {.file = kMpiProgram.name},
+          fmt::format("mpirun has started {} processes, and this program, which shares the work, is missing",
+                      processes),
+          fmt::format("it at {} (built where CMake finds MPI), or its name in the environment variable {}",
+                      path_beside_this_program(kMpiProgram).string(), kMpiProgram.variable));
     }
     ::execv(program.c_str(), argv);
     throw InputError({.file = program.string()}, fmt::format("cannot be started: {}", std::strerror(errno)),

@@ -21,6 +21,7 @@ class Runs:
     def __init__(self, arguments):
         self.abbe, self.mpirun = arguments.abbe, arguments.mpirun
         self.examples, self.out = arguments.examples, arguments.out
+        self.samples = 300000  # of a Monte Carlo that takes some 10 s
 
     def environment(self, **more):
         return {**os.environ, **ENVIRONMENT, **more}
@@ -130,7 +131,123 @@ def missing_program(runs):
     require(done.stderr.count("no-program") == 1, done.stderr)
 
 
-CASES = {"SameBytes": same_bytes, "WorkersOfOtherFiles": other_files, "LostProcess": lost_process,
+def monte_carlo_study(runs, name, samples, threads):
+    """A study whose identification is short and whose Monte Carlo is as long as wanted."""
+    text = (runs.examples / "three_axis/interferometer.study.toml").read_text()
+    text = text.replace('"../machines/', f'"{runs.examples}/machines/', 1)
+    text = text.replace("[identify]\n", f"[identify]\nmonte_carlo = {samples}\n", 1)
+    text = text.replace("\nseed = 9\n", f"\nseed = 9\nthreads = {threads}\n", 1)
+    require(f"monte_carlo = {samples}" in text and f"threads = {threads}" in text, "the study has changed")
+    study = runs.out / f"{name}.study.toml"
+    study.write_text(text)
+    return study
+
+
+def monte_carlo(runs):
+    """Every file of the results of a Monte Carlo and its map, for 1, 2, 3, 5 processes and 1, 2 threads."""
+    expected = None
+    for threads in (1, 2):
+        study = monte_carlo_study(runs, "study", 1000, threads)
+        for processes in (0, 1, 2, 3, 5):
+            out = runs.out / "results"
+            run = runs.alone if processes == 0 else lambda *words, n=processes: runs.together(n, *words)
+            done = run("run", study, "-o", out)
+            require(done.returncode == 0, threads, processes, done.stderr)
+            found = {path: content for path, content in files_of(out).items() if path.name != "study.toml"}
+            # The study says how many threads it has.
+            found = {path: content.replace(f"threads = {threads}".encode(), b"threads = T").replace(
+                f'"threads": {threads}'.encode(), b'"threads": T') for path, content in found.items()}
+            expected = expected or found
+            require(found.keys() == expected.keys(), threads, processes, found.keys())
+            for path, content in expected.items():
+                require(found[path] == content, threads, processes, path, "has other bytes")
+            require(not (runs.out / "results.unfinished").exists(), "short work has left a file")
+            shutil.rmtree(out)
+    require(b"monte_carlo" in expected[pathlib.Path("summary.json")], "no Monte Carlo in the results")
+
+
+def map_words(runs, output, points, *more):
+    return ("map", "--machine", runs.examples / "machines/trunnion-mill.machine.toml", "--errors",
+            runs.examples / "compensate/trunnion.errors.toml", "--grid", f"X_mm=-100:100:{points}", "--grid",
+            f"Y_mm=-100:100:{points}", "-o", output, *more)
+
+
+def maps(runs):
+    """The file and the figures of a map."""
+    expected = None
+    for processes in (0, 1, 2, 3, 5):
+        run = runs.alone if processes == 0 else lambda *words, n=processes: runs.together(n, *words)
+        done = run(*map_words(runs, runs.out / "map.csv", 20, "--force"))
+        require(done.returncode == 0, processes, done.stderr)
+        found = (done.stdout, (runs.out / "map.csv").read_bytes())
+        expected = expected or found
+        require(found == expected, processes, "processes: other bytes")
+
+
+def ranks_of(job, word):
+    """The numbers of the processes that mpirun has started."""
+    children = subprocess.run(["ps", "-o", "pid=,args=", "--ppid", str(job.pid)], capture_output=True, text=True)
+    return [int(line.split()[0]) for line in children.stdout.splitlines() if word in line]
+
+
+def kill_when_kept(runs, job, kept, word, least_bytes):
+    """Kills the second process as soon as the file of finished blocks has so many bytes."""
+    for _ in range(60000):
+        require(job.poll() is None, "the work ended before it was disturbed")
+        if kept.exists() and kept.stat().st_size > least_bytes:
+            break
+        time.sleep(0.005)
+    os.kill(max(ranks_of(job, word)), signal.SIGKILL)
+    _, errors = job.communicate(timeout=120)
+    require(job.returncode != 0 and "signal 9" in errors, errors)
+
+
+def killed_and_resumed(runs):
+    """A killed Monte Carlo goes on from its finished blocks, with any number of processes, to the same bytes."""
+    study = monte_carlo_study(runs, "study", runs.samples, 1)
+    out, kept = runs.out / "results", runs.out / "results.unfinished"
+    alone = runs.alone("run", study, "-o", out)
+    require(alone.returncode == 0, alone.stderr)
+    require(not kept.exists(), "left over after the results are whole")
+    expected = files_of(out)
+    for processes in (0, 3):
+        shutil.rmtree(out)
+        job = subprocess.Popen([runs.mpirun, "-n", "2", str(runs.abbe), "run", str(study), "-o", str(out)],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=runs.environment())
+        kill_when_kept(runs, job, kept, str(study), 100)
+        require(not out.exists() and kept.exists(), "results of a killed run")
+        with kept.open("ab") as file:  # a record that was torn
+            file.write(b"torn")
+        words = ("run", study, "-o", out)
+        done = runs.together(processes, *words) if processes else runs.alone(*words)
+        require(done.returncode == 0, done.stderr)
+        require("blocks of the Monte Carlo are taken from" in done.stderr, done.stderr)
+        require(files_of(out) == expected, processes, "other bytes after a resumption")
+        require(not kept.exists(), "left over after the results are whole")
+
+
+def two_jobs(runs):
+    """A second job on the same results is refused as long as the first one works."""
+    study = monte_carlo_study(runs, "study", runs.samples, 1)
+    out, kept = runs.out / "results", runs.out / "results.unfinished"
+    first = subprocess.Popen([runs.abbe, "run", study, "-o", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    while not kept.exists():
+        require(first.poll() is None, "the work ended before a second job was tried")
+        time.sleep(0.005)
+    second = runs.together(2, "run", study, "-o", out)
+    require(second.returncode == 2 and "another process works on these results" in second.stderr, second.stderr)
+    os.kill(first.pid, signal.SIGKILL)
+    first.wait()
+    full = subprocess.run(["sh", "-c", 'ulimit -f "$0"; exec "$@"', str(kept.stat().st_size // 512 + 8), runs.abbe, "run",
+                           study, "-o", out], capture_output=True, text=True)
+    require(full.returncode == 2 and "results.unfinished: cannot be written" in full.stderr, full.returncode, full.stderr)
+    require(not out.exists(), "results without space")
+    last = runs.alone("run", study, "-o", out)
+    require(last.returncode == 0 and "are taken from" in last.stderr, last.stderr)
+
+
+CASES = {"MonteCarlo": monte_carlo, "Maps": maps, "KilledAndResumed": killed_and_resumed, "TwoJobs": two_jobs,
+         "SameBytes": same_bytes, "WorkersOfOtherFiles": other_files, "LostProcess": lost_process,
          "OtherSubcommands": other_subcommands, "MissingProgram": missing_program}
 
 

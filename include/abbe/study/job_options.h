@@ -4,6 +4,7 @@
 #include <functional>
 #include <stop_token>
 
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/stopped.h"
 
 namespace abbe {
@@ -13,6 +14,8 @@ struct JobOptions {
   /// Called during the job with the work done and its total. Each job states what is counted and which thread calls.
   std::function<void(std::size_t done, std::size_t total)> progress{};
   std::stop_token stop{};  ///< checked whenever progress is reported
+  /// Who does the numbered work of a job; empty: this process. Jobs that have none do not use it.
+  WorkDriver work{};
 };
 
 /// A callback for the work of a job: stops it if that was requested, otherwise reports the progress.

@@ -68,6 +68,8 @@ struct RunOptions {
   /// Who sums the readings for the identification; empty: this process. Trials of orders, whose models are others, and
   /// everything after the identification are computed in this process.
   Summation summation{};
+  /// Who computes the samples of a Monte Carlo and the poses of the map; empty: this process.
+  WorkDriver work{};
 };
 
 /// Reads or simulates the readings of a study, identifies, validates at poses that were not used, judges whether the

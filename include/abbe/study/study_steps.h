@@ -12,10 +12,10 @@ namespace abbe {
 IdentifyOptions identify_options(const Study& study);
 
 /// The identification of a study from its readings, with the volumetric error that it predicts; no map.
-/// @param summation  as in RunOptions
+/// @param summation, work  as in RunOptions
 /// @throws Stopped if `stop` asks for it; SumError if what the summation gives is refused
 void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress = {},
-                    const std::stop_token& stop = {}, const Summation& summation = {});
+                    const std::stop_token& stop = {}, const Summation& summation = {}, const WorkDriver& work = {});
 
 /// The readings that identify_study() identifies, with their model, in `result.model`: what another process needs to
 /// sum pieces of them (PieceSummer). Where the study chooses orders, the model is that of the largest ones.
@@ -29,7 +29,9 @@ Problem prepared_problem(const Study& study);
 VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult& result);
 
 /// Map of the study's plan, or of 7 positions per axis over the known range.
-StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress = {});
+/// @param work  as in RunOptions
+StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress = {},
+                   const WorkDriver& work = {});
 
 /// Adds the length of measured - modelled of a reading (mm), if any of its components is a length.
 void append_length(const Observations& observations, std::size_t reading, std::vector<double>& lengths);

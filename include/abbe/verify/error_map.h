@@ -50,6 +50,7 @@
 
 #include "abbe/errors/chain_plan.h"
 #include "abbe/errors/poses.h"
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/rigid_transform.h"
 #include "abbe/verify/evaluations/statistics.h"
 
@@ -69,6 +70,9 @@ struct ErrorMapOptions {
   bool remove_rigid_motion = false;
   int threads = 0;                                                    ///< 0: all
   std::function<void(std::size_t done, std::size_t total)> progress;  ///< in poses; one thread at a time
+  /// Who computes the blocks of poses; empty: this process. Of several processes the first one alone gets the map; the
+  /// others get their own blocks of it, and poses of the rest are not covered.
+  WorkDriver work{};
 };
 
 /// Deviations of the functional point and the tool's orientation in the workpiece frame, structure of arrays.
@@ -112,7 +116,7 @@ struct ErrorMapBlock {
 };
 
 /// As error_map() for any number of poses: `visit` is called for every block, from several threads, in any order; block
-/// i covers poses i * 4096 and following. options.remove_rigid_motion costs a second pass.
+/// i covers poses i * 4096 and following. options.remove_rigid_motion costs a second pass; options.work is not used.
 /// @returns statistics of the norm, exact; 8 bytes per pose are kept for the percentiles, nothing else
 SampleStatistics stream_error_map(const Machine& machine, const ErrorSet& actual, const ErrorSet* reference,
                                   const PoseSource& poses, const ErrorMapOptions& options,

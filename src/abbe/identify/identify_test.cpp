@@ -4,9 +4,11 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <set>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/kept_blocks_for_test.h"
 #include "abbe/identify/function_observations_test.h"
 #include "abbe/identify/trust/monte_carlo.h"
 #include "abbe/identify/trust/prediction.h"
@@ -224,6 +226,31 @@ TEST(MonteCarlo, agrees_with_repeated_identification_of_simulated_data) {
     EXPECT_NEAR(simulated.percentiles(i, 2) - simulated.percentiles(i, 0), 3.92 * spread, 0.5 * spread);
   }
   EXPECT_NEAR(simulated.prediction_uncertainty[1], std::sqrt(simulated.covariance(1, 1)), 1e-12);
+}
+
+TEST(MonteCarlo, results_of_batches_can_come_from_elsewhere) {
+  Fit fit(simulate(3));
+  const Identification solution = identify(fit.problem);
+  MonteCarloOptions options;
+  options.samples = 200;
+  const MonteCarloResult alone = monte_carlo(fit.problem, solution, options);
+  test::KeptBlocks kept;
+  options.work = kept.keeping();
+  monte_carlo(fit.problem, solution, options);
+  options.work = kept.giving();
+  const MonteCarloResult given = monte_carlo(fit.problem, solution, options);
+  EXPECT_EQ(given.mean, alone.mean);
+  EXPECT_EQ(given.covariance, alone.covariance);
+  EXPECT_EQ(given.percentiles, alone.percentiles);
+
+  options.work = kept.keeping();
+  options.seed = 2;
+  monte_carlo(fit.problem, solution, options);
+  options.samples = 201;
+  monte_carlo(fit.problem, solution, options);
+  Fit other(simulate(4));
+  monte_carlo(other.problem, identify(other.problem), options);
+  EXPECT_EQ(std::set<std::uint64_t>(kept.fingerprints.begin(), kept.fingerprints.end()).size(), 4u);
 }
 
 TEST(MonteCarlo, does_not_depend_on_threads_and_matches_the_covariance_for_small_noise) {

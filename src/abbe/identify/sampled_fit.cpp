@@ -1,6 +1,7 @@
 #include "abbe/identify/sampled_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
@@ -104,6 +105,23 @@ bool SampledFit::prepare() {
   inverse_scale_ = normal.diagonal().cwiseSqrt().cwiseInverse();
   factor_.compute(inverse_scale_.asDiagonal() * normal * inverse_scale_.asDiagonal());
   return factor_.info() == Eigen::Success;
+}
+
+void SampledFit::add_to(Digest& digest) const {
+  digest.add_numbers(jacobian_);
+  digest.add_numbers(residuals_);
+  digest.add_numbers({directions_.data(), static_cast<std::size_t>(directions_.size())});
+  digest.add_numbers({priors_.data(), static_cast<std::size_t>(priors_.size())});
+  digest.add_numbers(std::array{loss_.tuning, loss_.scale, static_cast<double>(loss_.kind)});
+  for (const Shift& shift : shifts_) {
+    for (const std::size_t number : {shift.first, shift.rows, shift.stride}) digest.add(number);
+    digest.add_number(shift.size);
+  }
+  for (const SelectedObservations& selected : problem_.observations) {
+    digest.add_bytes(std::as_bytes(std::span(selected.use)));
+    for (std::size_t k = 0; k < selected.observations->reading_count(); ++k)
+      for (const double position : selected.observations->positions(k)) digest.add_number(position);
+  }
 }
 
 // Mean slope of the pseudo-residuals of every reading: with them the kept factor is that of the curvature which the

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/digest.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/normal_equations.h"
 
@@ -27,6 +28,10 @@ class SampledFit {
 
   /// Jacobian and factor. @returns false if the readings do not determine the free variables
   bool prepare();
+
+  /// After prepare(): adds everything that samples depend on besides their numbers, the readings with their commands
+  /// among them.
+  void add_to(Digest& digest) const;
 
   /// Draws the errors of all readings and priors in whitened space: standard normal; with a robust loss the outliers of
   /// the identification get theirs again, of the same size in a random direction.

@@ -40,6 +40,7 @@ class Mapping {
       : machine_(request.machine), poses_(poses) {
     options_.remove_rigid_motion = request.fit_datum;
     options_.progress = stoppable_progress(options);
+    options_.work = options.work;
   }
 
   ErrorMap with_uncertainty(const ErrorsFile& file) const {

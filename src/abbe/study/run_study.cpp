@@ -46,7 +46,7 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
     result.warnings = result.campaign.warnings;
     return result;
   }
-  identify_study(study, result, begin(StudyStep::identify), options.stop, options.summation);
+  identify_study(study, result, begin(StudyStep::identify), options.stop, options.summation, options.work);
   if (!result.usable()) {
     judge_trust(study, result);
     return result;
@@ -54,7 +54,7 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
   result.unseen = evaluate_unseen(study, result);
   tell_datum_apart(result, *result.unseen);
   judge_trust(study, result);
-  if (options.map) result.map = map_study(study, result, begin(StudyStep::map));
+  if (options.map) result.map = map_study(study, result, begin(StudyStep::map), options.work);
   return result;
 }
 

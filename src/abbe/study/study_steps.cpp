@@ -76,7 +76,7 @@ Problem prepared_problem(const Study& study) {
 }
 
 void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress,
-                    const std::stop_token& stop, const Summation& summation) {
+                    const std::stop_token& stop, const Summation& summation, const WorkDriver& work) {
   prepare_study(study, result);
   result.warnings = result.campaign.warnings;
   if (!result.model.impossible.empty()) {
@@ -127,6 +127,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     monte_carlo_options.seed = study.seed;
     monte_carlo_options.threads = study.threads;
     monte_carlo_options.stop = stop;
+    monte_carlo_options.work = work;
     monte_carlo_options.loss = options.loss;
     monte_carlo_options.loss_tuning = options.loss_tuning;
     result.monte_carlo =
@@ -168,7 +169,8 @@ VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult
                             study.threads);
 }
 
-StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress) {
+StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress,
+                   const WorkDriver& work) {
   const Machine& machine = study.machine;
   const ErrorSet& identified = result.identification.errors;
   StudyMap map;
@@ -205,6 +207,7 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
   options.remove_rigid_motion = true;
   options.threads = study.threads;
   options.progress = progress;
+  options.work = work;
   map.against_truth = result.campaign.truth.has_value();
   ParameterCovariance covariance;
   covariance.covariance = machine_covariance(result.identification, identified.parameter_count());

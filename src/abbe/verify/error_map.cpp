@@ -1,17 +1,28 @@
 #include "abbe/verify/error_map.h"
 
 #include <algorithm>
+#include <cstring>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 
 #include "abbe/geometry/best_fit_transform.h"
-#include "abbe/geometry/parallel_blocks.h"
+#include "abbe/verify/map_bytes.h"
 #include "abbe/verify/map_uncertainty.h"
 #include "abbe/verify/parts/deviation_block.h"
 
 namespace abbe {
 namespace {
+
+void pack_matrix(const Eigen::Ref<const Eigen::MatrixXd>& matrix, std::vector<std::byte>& bytes) {
+  pack_numbers({matrix.data(), static_cast<std::size_t>(matrix.size())}, bytes);
+}
+
+/// @param matrix  of its size; its columns without a gap
+template <typename Matrix>
+void unpack_matrix(std::span<const std::byte>& bytes, Matrix& matrix) {
+  unpack_numbers(bytes, {matrix.data(), static_cast<std::size_t>(matrix.size())});
+}
 
 /// What a best-fit motion needs of one block.
 struct FitSums {
@@ -20,6 +31,25 @@ struct FitSums {
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
   MapUncertainty::Sums uncertainty;
 };
+
+void pack_sums(const FitSums& sums, std::vector<std::byte>& bytes) {
+  pack_numbers({&sums.count, 1}, bytes);
+  pack_matrix(sums.actual, bytes);
+  pack_matrix(sums.reference, bytes);
+  pack_matrix(sums.products, bytes);
+  pack_matrix(sums.uncertainty.normal, bytes);
+  pack_matrix(sums.uncertainty.mixed, bytes);
+}
+
+void unpack_sums(std::span<const std::byte> bytes, FitSums& sums) {
+  unpack_numbers(bytes, {&sums.count, 1});
+  unpack_matrix(bytes, sums.actual);
+  unpack_matrix(bytes, sums.reference);
+  unpack_matrix(bytes, sums.products);
+  unpack_matrix(bytes, sums.uncertainty.normal);
+  unpack_matrix(bytes, sums.uncertainty.mixed);
+  require_unpacked(bytes);
+}
 
 /// @param origin  near the points, so that their products keep their digits
 FitSums fit_sums(const DeviationBlock& block, const Eigen::Vector3d& origin) {
@@ -35,6 +65,9 @@ FitSums fit_sums(const DeviationBlock& block, const Eigen::Vector3d& origin) {
   }
   return sums;
 }
+
+/// Tells the fingerprint of the first pass over the poses from that of the second.
+constexpr std::uint64_t kFirstPass = 0x5bd1e9955bd1e995U;
 
 class Progress {
  public:
@@ -63,7 +96,7 @@ struct RigidPart {
 };
 
 /// First pass: the rigid motion to take out, and its share of the uncertainty.
-void find_rigid_part(const DeviationModel& model, const PoseSource& poses, const ErrorMapOptions& options,
+void find_rigid_part(const DeviationModel& model, const PoseSource& poses, const WorkDriver& driver, NumberedWork work,
                      Progress& progress, RigidPart& part) {
   const std::size_t blocks = block_count(poses);
   if (blocks == 0) return;
@@ -75,14 +108,24 @@ void find_rigid_part(const DeviationModel& model, const PoseSource& poses, const
     origin = {block.point[0][0], block.point[1][0], block.point[2][0]};
   }
   std::vector<FitSums> sums(blocks);
-  for_each_block(blocks, options.threads, [&](std::size_t index) {
+  work.name = "best fit of the workpiece datum";
+  work.for_all = true;
+  work.fingerprint = [of_map = work.fingerprint] { return of_map() ^ kFirstPass; };
+  work.pack = [&](std::size_t index, std::vector<std::byte>& bytes) { pack_sums(sums[index], bytes); };
+  work.unpack = [&](std::size_t index, std::span<const std::byte> bytes) {
+    if (part.uncertainty) sums[index].uncertainty = part.uncertainty->no_sums();
+    unpack_sums(bytes, sums[index]);
+    progress.add(std::min(DeviationBlock::kSize, poses.count - index * DeviationBlock::kSize));
+  };
+  work.compute = [&](std::size_t index) {
     DeviationBlock& block = thread_block();
     load_block(poses, index, block);
     model.evaluate(block, {});
     sums[index] = fit_sums(block, origin);
     if (part.uncertainty) sums[index].uncertainty = part.uncertainty->sums(model, block);
     progress.add(block.count);
-  });
+  };
+  do_work(driver, work);
   FitSums total = sums[0];
   for (std::size_t i = 1; i < blocks; ++i) {
     total.count += sums[i].count;
@@ -108,7 +151,7 @@ void check(const Machine& machine, const PoseSource& poses) {
 
 SampleStatistics visit_map(const Machine& machine, const ErrorSet& actual, const ErrorSet* reference,
                            const PoseSource& poses, const ErrorMapOptions& options, RigidTransform& removed,
-                           const std::function<void(const ErrorMapBlock&)>& visit) {
+                           const std::function<void(const ErrorMapBlock&)>& visit, const MapBytes& bytes = {}) {
   check(machine, poses);
   const DeviationModel model(machine, actual, reference, options.orientation);
   RigidPart part;
@@ -116,12 +159,38 @@ SampleStatistics visit_map(const Machine& machine, const ErrorSet& actual, const
     part.uncertainty.emplace(*options.covariance, actual.parameter_count(), options.orientation);
   }
   Progress progress(options, poses.count * (options.remove_rigid_motion ? 2 : 1));
-  if (options.remove_rigid_motion) find_rigid_part(model, poses, options, progress, part);
+  NumberedWork work;
+  work.name = "map";
+  work.blocks = block_count(poses);
+  work.threads = options.threads;
+  work.fingerprint = [&] { return map_fingerprint(machine, actual, reference, poses, options); };
+  const WorkDriver driver = bytes.map != nullptr ? options.work : WorkDriver();
+  if (options.remove_rigid_motion) find_rigid_part(model, poses, driver, work, progress, part);
   removed = part.datum;
 
   std::vector<double> norms(poses.count);
   std::vector<std::uint8_t> covered(poses.count);
-  for_each_block(block_count(poses), options.threads, [&](std::size_t index) {
+  const auto count_of = [&](std::size_t index) {
+    return std::min(DeviationBlock::kSize, poses.count - index * DeviationBlock::kSize);
+  };
+  work.pack = [&](std::size_t index, std::vector<std::byte>& to) {
+    const std::size_t first = index * DeviationBlock::kSize, count = count_of(index);
+    pack_numbers({norms.data() + first, count}, to);
+    const std::span<const std::byte> flags = std::as_bytes(std::span(covered.data() + first, count));
+    to.insert(to.end(), flags.begin(), flags.end());
+    bytes.pack(first, count, to);
+  };
+  work.unpack = [&](std::size_t index, std::span<const std::byte> from) {
+    const std::size_t first = index * DeviationBlock::kSize, count = count_of(index);
+    unpack_numbers(from, {norms.data() + first, count});
+    if (from.size() < count) throw WorkError("results of a block are cut off");
+    std::memcpy(covered.data() + first, from.data(), count);
+    from = from.subspan(count);
+    bytes.unpack(first, count, from);
+    require_unpacked(from);
+    progress.add(count);
+  };
+  work.compute = [&](std::size_t index) {
     DeviationBlock& block = thread_block();
     load_block(poses, index, block);
     model.evaluate(block, part.datum);
@@ -155,8 +224,14 @@ SampleStatistics visit_map(const Machine& machine, const ErrorSet& actual, const
       visit(seen);
     }
     progress.add(block.count);
-  });
-  return sample_statistics(norms, covered);
+  };
+  do_work(driver, work);
+  const SampleStatistics statistics = sample_statistics(norms, covered);
+  if (bytes.map != nullptr) {
+    bytes.map->norm = std::move(norms);
+    bytes.map->covered = std::move(covered);
+  }
+  return statistics;
 }
 
 }  // namespace
@@ -177,8 +252,6 @@ ErrorMap error_map(const Machine& machine, const ErrorSet& actual, const ErrorSe
     map.displacement[c].resize(n);
     if (options.orientation) map.rotation[c].resize(n);
   }
-  map.norm.resize(n);
-  map.covered.resize(n);
   if (options.covariance) {
     for (std::size_t c = 0; c < (options.orientation ? 6u : 3u); ++c) map.uncertainty[c].resize(n);
     map.norm_uncertainty.resize(n);
@@ -195,12 +268,10 @@ ErrorMap error_map(const Machine& machine, const ErrorSet& actual, const ErrorSe
     copy_points(block.point, map.point);
     copy_points(block.displacement, map.displacement);
     copy_points(block.rotation, map.rotation);
-    copy(block.norm, map.norm);
     copy(block.norm_uncertainty, map.norm_uncertainty);
     for (std::size_t c = 0; block.uncertainty && c < 6; ++c) copy(block.uncertainty[c], map.uncertainty[c]);
-    std::copy_n(block.covered, block.count, map.covered.begin() + static_cast<std::ptrdiff_t>(block.first));
   };
-  map.statistics = visit_map(machine, actual, reference, poses, options, map.removed, keep);
+  map.statistics = visit_map(machine, actual, reference, poses, options, map.removed, keep, bytes_of(map));
   return map;
 }
 

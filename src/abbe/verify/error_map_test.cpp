@@ -5,11 +5,13 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_errors.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/kept_blocks_for_test.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -235,6 +237,45 @@ TEST(ErrorMap, DoesNotDependOnTheBedFrame) {
   const ErrorMap a = error_map(machine(), errors, nullptr, pose_source(poses));
   const ErrorMap b = error_map(moved, errors, nullptr, pose_source(poses));
   for (std::size_t k = 0; k < 50; ++k) EXPECT_LT((at(a.displacement, k) - at(b.displacement, k)).norm(), 1e-10);
+}
+
+TEST(ErrorMap, ResultsOfBlocksCanComeFromElsewhere) {
+  const PoseList poses = random_poses(10000, 7);
+  const ErrorSet errors = errors_of(1), other = errors_of(2);
+  ParameterCovariance covariance;
+  covariance.parameters = {3, 4, 10};
+  covariance.covariance = Eigen::Vector3d(1e-6, 2e-6, 1e-6).asDiagonal();
+  ErrorMapOptions options;
+  options.remove_rigid_motion = true;
+  options.covariance = &covariance;
+  const ErrorMap alone = error_map(machine(), errors, nullptr, pose_source(poses), options);
+  test::KeptBlocks kept;
+  options.work = kept.keeping();
+  error_map(machine(), errors, nullptr, pose_source(poses), options);
+  options.work = kept.giving();
+  const ErrorMap given = error_map(machine(), errors, nullptr, pose_source(poses), options);
+  EXPECT_EQ(given.point, alone.point);
+  EXPECT_EQ(given.displacement, alone.displacement);
+  EXPECT_EQ(given.rotation, alone.rotation);
+  EXPECT_EQ(given.norm, alone.norm);
+  EXPECT_EQ(given.uncertainty, alone.uncertainty);
+  EXPECT_EQ(given.norm_uncertainty, alone.norm_uncertainty);
+  EXPECT_EQ(given.covered, alone.covered);
+  EXPECT_EQ(given.statistics.mean, alone.statistics.mean);
+
+  // Other inputs, other fingerprints: both passes of each map.
+  options.work = kept.keeping();
+  error_map(machine(), other, nullptr, pose_source(poses), options);
+  error_map(machine(), errors, &other, pose_source(poses), options);
+  const PoseList moved = random_poses(10000, 8);
+  error_map(machine(), errors, nullptr, pose_source(moved), options);
+  covariance.covariance(1, 1) *= 2;
+  error_map(machine(), errors, nullptr, pose_source(poses), options);
+  Machine longer = machine();
+  longer.tool_offset.z() += 1;
+  error_map(longer, errors, nullptr, pose_source(poses), options);
+  ASSERT_EQ(kept.fingerprints.size(), 12u);
+  EXPECT_EQ(std::set<std::uint64_t>(kept.fingerprints.begin(), kept.fingerprints.end()).size(), 12u);
 }
 
 TEST(ErrorShares, AddUpToOneAndASingleKindHasAll) {

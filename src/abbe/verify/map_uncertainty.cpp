@@ -30,9 +30,14 @@ MapUncertainty::MapUncertainty(const ParameterCovariance& covariance, std::size_
   factor_ = covariance_root(c);
 }
 
-MapUncertainty::Sums MapUncertainty::sums(const DeviationModel& model, const DeviationBlock& block) const {
+MapUncertainty::Sums MapUncertainty::no_sums() const {
   Sums sums;
   sums.mixed = Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(parameters_.size()));
+  return sums;
+}
+
+MapUncertainty::Sums MapUncertainty::sums(const DeviationModel& model, const DeviationBlock& block) const {
+  Sums sums = no_sums();
   for_each_deviation_jacobian(model, block, parameters_, rows_,
                               [&](std::size_t from, Eigen::Index number, const Eigen::MatrixXd& jacobian) {
                                 for (Eigen::Index k = 0; k < number; ++k) {

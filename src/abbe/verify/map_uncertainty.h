@@ -23,6 +23,7 @@ class MapUncertainty {
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
     Eigen::MatrixXd mixed;  ///< [6, n]
   };
+  Sums no_sums() const;  ///< zero, in the sizes of sums()
   Sums sums(const DeviationModel& model, const DeviationBlock& block) const;
   void remove_rigid_motion(const Sums& total);
 

@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/identify/identify.h"
 
 namespace abbe {
@@ -19,6 +20,7 @@ struct MonteCarloOptions {
   int threads = 0;
   std::size_t memory_limit_bytes = std::size_t{1} << 30;  ///< for the kept Jacobian and the samples
   std::stop_token stop{};                                 ///< looked at before every batch of samples: throws Stopped
+  WorkDriver work{};                                      ///< who computes the batches of samples; empty: this process
 };
 
 enum class MonteCarloStatus { not_run, done, no_solution, too_large };

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 
+#include "abbe/geometry/cross_products.h"
+#include "abbe/geometry/digest.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/stopped.h"
 #include "abbe/identify/sampled_fit.h"
@@ -30,6 +33,108 @@ Eigen::MatrixXd percentiles_of(const Eigen::MatrixXd& values, const std::vector<
   return result;
 }
 
+/// Samples in batches, each of which is fitted by itself.
+class SampleBatches {
+ public:
+  SampleBatches(const SampledFit& sampled, const Eigen::VectorXd& estimates, const MonteCarloOptions& options)
+      : sampled_(sampled),
+        estimates_(estimates),
+        options_(options),
+        noise_(sampled.length() * kSampleBatch),
+        changed_(noise_.size()),
+        y_(sampled.directions().cols(), static_cast<Index>(kSampleBatch)),
+        changes_(estimates.size(), static_cast<Index>(options.samples)),
+        open_((options.samples + kSampleBatch - 1) / kSampleBatch) {}
+
+  const Eigen::MatrixXd& changes() const { return changes_; }  ///< [p, samples]
+  std::size_t not_settled() const { return static_cast<std::size_t>(std::accumulate(open_.begin(), open_.end(), 0.0)); }
+
+  void draw_and_fit() {
+    NumberedWork work;
+    work.name = "Monte Carlo";
+    work.blocks = open_.size();
+    // The observations stand at one point at a time.
+    work.in_parallel = false;
+    work.for_all = true;
+    work.fingerprint = [this] { return fingerprint(); };
+    work.compute = [this](std::size_t batch) { compute(batch); };
+    work.pack = [this](std::size_t batch, std::vector<std::byte>& bytes) {
+      pack_numbers({&open_[batch], 1}, bytes);
+      pack_numbers(changes_of(batch), bytes);
+    };
+    work.unpack = [this](std::size_t batch, std::span<const std::byte> bytes) {
+      unpack_numbers(bytes, {&open_[batch], 1});
+      unpack_numbers(bytes, changes_of(batch));
+      require_unpacked(bytes);
+    };
+    do_work(options_.work, work);
+  }
+
+ private:
+  std::size_t size(std::size_t batch) const { return std::min(kSampleBatch, options_.samples - batch * kSampleBatch); }
+
+  std::span<double> changes_of(std::size_t batch) {
+    const auto p = static_cast<std::size_t>(changes_.rows());
+    return {changes_.data() + p * batch * kSampleBatch, p * size(batch)};
+  }
+
+  std::uint64_t fingerprint() const {
+    Digest digest;
+    digest.add_text("Monte Carlo");
+    digest.add_text(vector_instructions());
+    digest.add(options_.samples);
+    digest.add(options_.seed);
+    digest.add(static_cast<std::uint64_t>(options_.chord_iterations));
+    digest.add_numbers({estimates_.data(), static_cast<std::size_t>(estimates_.size())});
+    sampled_.add_to(digest);
+    return digest.value();
+  }
+
+  template <typename Work>
+  void in_tasks(std::size_t batch_size, const Work& work) const {
+    for_each_block((batch_size + kSampleTask - 1) / kSampleTask, options_.threads, [&](std::size_t task) {
+      const std::size_t first = task * kSampleTask;
+      work(first, std::min(kSampleTask, batch_size - first));
+    });
+  }
+
+  void compute(std::size_t number) {
+    stop_if_asked(options_.stop);
+    const std::size_t start = number * kSampleBatch, batch = size(number), length = sampled_.length();
+    std::atomic<std::size_t> not_settled{0};
+    const auto fit = [&](const std::vector<double>& residuals, bool counts) {
+      in_tasks(batch, [&](std::size_t first, std::size_t count) {
+        const std::size_t open = sampled_.fit(residuals.data() + first * length, count,
+                                              y_.middleCols(static_cast<Index>(first), static_cast<Index>(count)));
+        if (counts) not_settled += open;
+      });
+    };
+    y_.setZero();
+    in_tasks(batch, [&](std::size_t first, std::size_t count) {
+      for (std::size_t i = first; i < first + count; ++i)
+        sampled_.draw(options_.seed, start + i, noise_.data() + i * length);
+    });
+    fit(noise_, options_.chord_iterations == 0);
+    for (int iteration = 0; iteration < options_.chord_iterations; ++iteration) {
+      for (std::size_t i = 0; i < batch; ++i)
+        sampled_.exact(estimates_ + sampled_.directions() * y_.col(static_cast<Index>(i)), noise_.data() + i * length,
+                       changed_.data() + i * length);
+      fit(changed_, iteration + 1 == options_.chord_iterations);
+    }
+    changes_.middleCols(static_cast<Index>(start), static_cast<Index>(batch)) =
+        sampled_.directions() * y_.leftCols(static_cast<Index>(batch));
+    open_[number] = static_cast<double>(not_settled.load());
+  }
+
+  const SampledFit& sampled_;
+  const Eigen::VectorXd& estimates_;
+  const MonteCarloOptions& options_;
+  std::vector<double> noise_, changed_;  // of one batch
+  Eigen::MatrixXd y_;                    // free variables of one batch
+  Eigen::MatrixXd changes_;
+  std::vector<double> open_;  // [batches] samples that have not settled
+};
+
 }  // namespace
 
 MonteCarloResult monte_carlo(const Problem& problem, const Identification& identification,
@@ -51,50 +156,16 @@ MonteCarloResult monte_carlo(const Problem& problem, const Identification& ident
     result.status = MonteCarloStatus::no_solution;
     return result;
   }
-  const Eigen::MatrixXd& directions = sampled.directions();
-  const std::size_t length = sampled.length();
-  std::vector<double> noise(length * kSampleBatch), changed(length * kSampleBatch);
-  std::atomic<std::size_t> not_settled{0};
-  Eigen::MatrixXd changes(p, static_cast<Index>(options.samples));
-  Eigen::MatrixXd y(directions.cols(), static_cast<Index>(kSampleBatch));
-  for (std::size_t start = 0; start < options.samples; start += kSampleBatch) {
-    stop_if_asked(options.stop);
-    const std::size_t batch = std::min(kSampleBatch, options.samples - start);
-    const auto in_tasks = [&](const auto& work) {
-      for_each_block((batch + kSampleTask - 1) / kSampleTask, options.threads, [&](std::size_t task) {
-        const std::size_t first = task * kSampleTask;
-        work(first, std::min(kSampleTask, batch - first));
-      });
-    };
-    y.setZero();
-    in_tasks([&](std::size_t first, std::size_t count) {
-      for (std::size_t i = first; i < first + count; ++i)
-        sampled.draw(options.seed, start + i, noise.data() + i * length);
-      const std::size_t open = sampled.fit(noise.data() + first * length, count,
-                                           y.middleCols(static_cast<Index>(first), static_cast<Index>(count)));
-      if (options.chord_iterations == 0) not_settled += open;
-    });
-    for (int iteration = 0; iteration < options.chord_iterations; ++iteration) {
-      // The observations stand at one point at a time.
-      for (std::size_t i = 0; i < batch; ++i)
-        sampled.exact(estimates + directions * y.col(static_cast<Index>(i)), noise.data() + i * length,
-                      changed.data() + i * length);
-      in_tasks([&](std::size_t first, std::size_t count) {
-        const std::size_t open = sampled.fit(changed.data() + first * length, count,
-                                             y.middleCols(static_cast<Index>(first), static_cast<Index>(count)));
-        if (iteration + 1 == options.chord_iterations) not_settled += open;
-      });
-    }
-    changes.middleCols(static_cast<Index>(start), static_cast<Index>(batch)) =
-        directions * y.leftCols(static_cast<Index>(batch));
-  }
+  SampleBatches batches(sampled, estimates, options);
+  batches.draw_and_fit();
+  const Eigen::MatrixXd& changes = batches.changes();
   set_observations(problem, estimates);
   if (!changes.allFinite()) {
     result.status = MonteCarloStatus::no_solution;
     return result;
   }
   result.samples = options.samples;
-  result.not_settled = not_settled;
+  result.not_settled = batches.not_settled();
   const double n = static_cast<double>(options.samples);
   const Eigen::VectorXd shift = changes.rowwise().mean();
   result.mean = estimates + shift;

@@ -1,0 +1,110 @@
+"""Measures what several processes of mpirun gain for a Monte Carlo and a map, and fits the model of docs/scale.md.
+
+    several_processes.py --abbe PROGRAM --mpirun PROGRAM --examples FOLDER [--rounds N]
+
+One and two processes, each bound to a core, on which it runs one thread, run in turn, for a small and a large amount of work. Each figure is the best of
+its rounds, because other work on the machine only adds to it. Two kinds of time are measured: that on the clock, and
+the processor time of the process that has used most, which is the time on the clock of a machine with nothing else to
+do. The model is, for n items in p processes,
+
+    time = a + b n / p + c n (p - 1) / p
+
+a: start, input and all that every process does by itself; b: computation of an item; c: what the first process spends
+on an item that another one has computed. a and b come from one process, c from two.
+"""
+
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
+               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "core"}
+
+#: Runs the command and appends its processor time to a file.
+TIMED = """import os, resource, subprocess, sys
+code = subprocess.call(sys.argv[2:])
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+with open(sys.argv[1], "a") as file:
+    file.write(f"{used.ru_utime + used.ru_stime}\\n")
+sys.exit(code)
+"""
+
+
+class Runs:
+    def __init__(self, arguments, folder):
+        self.arguments, self.folder = arguments, folder
+        self.timed, self.times = folder / "timed.py", folder / "times"
+        self.timed.write_text(TIMED)
+
+    def measure(self, processes, words):
+        """Seconds on the clock, and of the processor in the process that used most."""
+        self.times.unlink(missing_ok=True)
+        begin = time.perf_counter()
+        done = subprocess.run([self.arguments.mpirun, "-n", str(processes), sys.executable, self.timed, self.times,
+                               self.arguments.abbe, *map(str, words)], capture_output=True, text=True,
+                              env={**os.environ, **ENVIRONMENT})
+        clock = time.perf_counter() - begin
+        if done.returncode != 0:
+            sys.exit(done.stderr)
+        return clock, max(map(float, self.times.read_text().split()))
+
+
+def monte_carlo(runs, items):
+    text = (runs.arguments.examples / "three_axis/interferometer.study.toml").read_text()
+    text = text.replace('"../machines/', f'"{runs.arguments.examples.resolve()}/machines/', 1)
+    text = text.replace("[identify]\n", f"[identify]\nmonte_carlo = {items}\n", 1)
+    text = text.replace("\nseed = 9\n", "\nseed = 9\nthreads = 1\n", 1)
+    study = runs.folder / f"{items}.study.toml"
+    study.write_text(text)
+    return ("run", study, "-o", runs.folder / "results")
+
+
+def poses(runs, items):
+    side = round((items / 4) ** 0.5)
+    machine = runs.arguments.examples / "machines/trunnion-mill.machine.toml"
+    errors = runs.arguments.errors or runs.arguments.examples / "compensate/trunnion.errors.toml"
+    return ("map", "--machine", machine, "--errors", errors, "--grid", f"X_mm=-100:100:{side}",
+            "--grid", f"Y_mm=-100:100:{side}", "--grid", "Z_mm=0:50:4", "--grid", "A_deg=0", "--grid", "C_deg=0")
+
+
+def report(name, runs, words, sizes):
+    best = {}
+    for _ in range(runs.arguments.rounds):
+        for items in sizes:
+            for processes in (1, 2):
+                found = runs.measure(processes, words(runs, items))
+                before = best.get((items, processes), found)
+                best[items, processes] = tuple(map(min, before, found))
+    small, large = sizes
+    for kind, k in (("clock", 0), ("processor", 1)):
+        one, two = best[large, 1][k], best[large, 2][k]
+        slope_one = (one - best[small, 1][k]) / (large - small)
+        slope_two = (two - best[small, 2][k]) / (large - small)
+        a, b = one - slope_one * large, slope_one
+        c = 2 * slope_two - slope_one
+        print(f"{name}, {kind}: {large} items in {one:.2f} s with 1, {two:.2f} s with 2 processes: "
+              f"efficiency {one / two / 2:.3f}; of an item alone {slope_one / slope_two / 2:.3f}; "
+              f"a = {a:.2f} s, b = {1e6 * b:.2f} us, c = {1e6 * c:.2f} us")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    for name in ("--abbe", "--mpirun", "--examples"):
+        parser.add_argument(name, required=True, type=pathlib.Path)
+    parser.add_argument("--errors", type=pathlib.Path, help="errors of the trunnion mill with covariance")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--samples", type=int, default=400000)
+    parser.add_argument("--poses", type=int, default=400000)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        runs = Runs(arguments, pathlib.Path(folder))
+        report("Monte Carlo", runs, monte_carlo, (arguments.samples // 4, arguments.samples))
+        report("map", runs, poses, (arguments.poses // 4, arguments.poses))
+
+
+if __name__ == "__main__":
+    main()

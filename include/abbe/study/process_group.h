@@ -1,0 +1,22 @@
+#pragma once
+
+#include "abbe/formats/study/study.h"
+#include "abbe/geometry/numbered_work.h"
+#include "abbe/identify/sums/sum_of_readings.h"
+
+namespace abbe {
+
+/// Several processes of one command, started together (mpi/). Each does what the command says from the same files; they
+/// share sums over readings and numbered work, and the first one alone writes.
+class ProcessGroup {
+ public:
+  virtual ~ProcessGroup() = default;
+  virtual bool is_first() const = 0;
+  /// Shares the readings of the study out. Every process calls it and gets the same sums.
+  virtual Summation summation(const Study& study) = 0;
+  /// Shares the blocks out. Every process calls it with the same work. What is there already, and
+  /// NumberedWork::finished, count in the first one.
+  virtual void work(const NumberedWork& work) = 0;
+};
+
+}  // namespace abbe
