@@ -12,10 +12,10 @@ namespace abbe {
 IdentifyOptions identify_options(const Study& study);
 
 /// The identification of a study from its readings, with the volumetric error that it predicts; no map.
-/// @param summation  as in RunOptions
+/// @param summation, advice  as in RunOptions
 /// @throws Stopped if `stop` asks for it; SumError if what the summation gives is refused
 void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress = {},
-                    const std::stop_token& stop = {}, const Summation& summation = {});
+                    const std::stop_token& stop = {}, const Summation& summation = {}, bool advice = true);
 
 /// The readings that identify_study() identifies, with their model, in `result.model`: what another process needs to
 /// sum pieces of them (PieceSummer). Where the study chooses orders, the model is that of the largest ones.

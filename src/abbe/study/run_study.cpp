@@ -46,7 +46,7 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
     result.warnings = result.campaign.warnings;
     return result;
   }
-  identify_study(study, result, begin(StudyStep::identify), options.stop, options.summation);
+  identify_study(study, result, begin(StudyStep::identify), options.stop, options.summation, options.advice);
   if (!result.usable()) {
     judge_trust(study, result);
     return result;

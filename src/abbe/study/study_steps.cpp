@@ -76,7 +76,7 @@ Problem prepared_problem(const Study& study) {
 }
 
 void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress,
-                    const std::stop_token& stop, const Summation& summation) {
+                    const std::stop_token& stop, const Summation& summation, bool advice) {
   prepare_study(study, result);
   result.warnings = result.campaign.warnings;
   if (!result.model.impossible.empty()) {
@@ -117,7 +117,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
   for (const GaugeConstraint& constraint : result.identification.gauge.constraints) {
     if (!constraint.by_convention) result.warnings.push_back(constraint.words + ": " + constraint.inseparable_words);
   }
-  if (result.identification.estimates.size() > 0) {
+  if (advice && result.identification.estimates.size() > 0) {
     result.advice = unseen_advice(problem, result.identification, possible_measurements(problem));
   }
   if (!result.usable()) return;
@@ -151,7 +151,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
         "them",
         state.column, state.to));
   }
-  result.not_identified = find_not_identified(study, result);
+  result.not_identified = find_not_identified(study, result, advice);
   result.volumetric = study_volumetric_figures(study, result);
   if (progress) progress(1, 1);
 }
