@@ -30,7 +30,7 @@ p { max-width: 46rem; overflow-wrap: anywhere; } .soft { color: var(--soft); fon
 th, td { text-align: left; padding: 0.35rem 0.9rem 0.35rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--soft); font-weight: 500; } .n { text-align: right; white-space: nowrap; } td svg { display: block; }
 svg .line { fill: none; stroke: var(--accent); stroke-width: 1.5; } svg .limit { stroke: var(--bad); stroke-dasharray: 3 3; }
-svg .box { fill: var(--accent); } svg text { fill: var(--soft); font-size: 11px; } svg .axis { stroke: var(--line); }
+svg .box { fill: var(--accent); } svg text { fill: var(--soft); font-size: 11px; } svg .axis { stroke: var(--line); } .delays { width: 100%; max-width: 40rem; }
 :focus-visible { outline: 2px solid var(--accent); }
 @media (max-width: 40rem) {
   .cards thead { position: absolute; clip-path: inset(50%); width: 1px; height: 1px; overflow: hidden; }
@@ -79,7 +79,7 @@ def histogram(delays: list[int], weeks: int = 26) -> str:
                    for k, n in enumerate(counts))
     labels = "".join(f'<text x="{28 + 20 * k}" y="105" text-anchor="middle">{k}{"+" if k == weeks else ""}</text>'
                      for k in range(0, weeks + 1, 2))
-    return (f'<svg viewBox="0 0 570 110" width="100%" role="img" aria-label="detection delays in weeks">{bars}'
+    return (f'<svg viewBox="0 0 570 110" class="delays" role="img" aria-label="detection delays in weeks">{bars}'
             f'<line class="axis" x1="18" x2="562" y1="90" y2="90"/>{labels}<text x="18" y="10">{top}</text></svg>')
 
 
@@ -88,7 +88,7 @@ def service_table(rows: list[dict[str, Any]]) -> str:
     listed = sorted(((row, alarm) for row, alarm in found if alarm), key=lambda each: (-each[1]["at_tool_um"], each[0]["machine"]))
     if not listed:
         return "<p>None.</p>"
-    lines = [[str(row["machine"]), f"{escape(alarm['error'])}<br><span class=\"soft\">{escape(alarm['words'])}</span>",
+    lines = [[str(row["machine"]), f"<div>{escape(alarm['error'])}<br><span class=\"soft\">{escape(alarm['words'])}</span></div>",
               f"{alarm['change']:+.1f} &plusmn; {alarm['expanded_uncertainty']:.1f} {'&micro;rad' if alarm['unit'] == 'urad' else '&micro;m'}",
               f"{alarm['at_tool_um']:.1f} &micro;m", date_of(alarm["since"]), date_of(alarm["day"]), escape(alarm["kind"]),
               chart(row[alarm["kind"]])] for row, alarm in listed]
@@ -106,7 +106,7 @@ def times_section(times: list[dict[str, Any]]) -> str:
     wall = sum(one.get("wall_s", 0) for one in times)
     done = sum(one["campaigns"] for one in times if "wall_s" in one)
     rate = f"<p>{done} campaigns in {wall:.0f} s: {done / wall:.1f} a second.</p>" if wall > 0 and done else ""
-    return "<h2>Times</h2>" + rate + table(["Step", "All workers", "One campaign"], lines, {1, 2})
+    return "<h2>Times</h2>" + rate + table(["Step", "Processor, all workers", "One campaign"], lines, {1, 2})
 
 
 def events_table(score: dict[str, Any]) -> str:
@@ -149,7 +149,7 @@ tracker every four weeks. Seed {settings.seed}.</p>
 {service_table(rows)}
 <h2>Against the truth</h2>
 <p>False alarms: {alarms['machines']} of {alarms['of']} machines without an event ({100 * alarms['share']:.2f} %; 95 % interval
-{100 * alarms['interval'][0]:.2f} to {100 * alarms['interval'][1]:.2f} %) in {alarms['years']:.0f} machine-years. Expected from the rule:
+{100 * alarms['interval'][0]:.2f} to {100 * alarms['interval'][1]:.2f} %) in {alarms['years']:.1f} machine-years. Expected from the rule:
 {100 * alarms['expected_at_least']:.2f} to {100 * alarms['expected']:.2f} %. A machine with an event had an alarm before it {score['before_event']} times.</p>
 <p>Mean square of the standardised innovations of machines without an event, which is 1 if drift, scatter and uncertainties are
 as stated: {checked or "not enough campaigns"}.</p>

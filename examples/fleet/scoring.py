@@ -13,6 +13,9 @@ from shards import Settings
 def alarm_of(row: dict[str, Any]) -> dict[str, Any] | None:
     """The first alarm of a machine, whichever kind of campaign raised it."""
     found = [{**row[kind.name]["alarm"], "kind": kind.name} for kind in KINDS if row[kind.name]["alarm"]]
+    for alarm in found:
+        if alarm["error"].startswith("reversal_"):  # the tool stands so far apart after approaches from both sides
+            alarm["at_tool_um"] = abs(alarm["change"])
     return min(found, key=lambda alarm: alarm["day"]) if found else None
 
 

@@ -107,7 +107,17 @@ class LocalSlurm:
     def wait_for_jobs(self, seconds=240):
         self._wait(lambda: self.output("squeue", "-h").strip() == "", "jobs are still in the queue", seconds)
 
+    def _cancel_jobs(self):
+        """A job outlives slurmd, which would find it again."""
+        try:
+            self.output("scancel", f"--user={getpass.getuser()}")
+            self._wait(lambda: self.output("squeue", "-h").strip() == "", "jobs do not end", 20)
+        except (RuntimeError, OSError, subprocess.TimeoutExpired):
+            pass  # then the test has failed already, and its message is the one to be seen
+
     def __exit__(self, *_):
+        if (self.folder / "slurmctld.pid").exists():
+            self._cancel_jobs()
         for process in reversed(self._processes):
             process.terminate()
         for process in reversed(self._processes):
