@@ -119,14 +119,17 @@ class Study:
         return study
 
     def run(self, readings: Mapping[str, Readings] | None = None, *, truth: Errors | None = None,
-            accept_misfit: bool = False, map: bool = True, progress: Progress = None) -> StudyResult:
+            accept_misfit: bool = False, map: bool = True, advice: bool = True,
+            progress: Progress = None) -> StudyResult:
         """Reads or simulates the readings, identifies, validates, judges the result and maps the volumetric error.
 
         ``readings``: by set-up, in place of its files. ``truth``: errors behind simulated readings, in place of the
         study's. ``accept_misfit``: the result is to be used although it is distrusted. ``map=False``: no map.
+        ``advice=False``: not computed is which measurement would show what these readings leave open, which takes most
+        of the time of a small study.
         ``progress(step, done, total)`` is called from time to time; Ctrl-C stops the study. Nothing is written.
         """
-        return _core.StudyData.run(self._data, dict(readings or {}), truth, accept_misfit, map, progress)
+        return _core.StudyData.run(self._data, dict(readings or {}), truth, accept_misfit, map, advice, progress)
 
     def gather(self, readings: Mapping[str, Readings] | None = None, *, truth: Errors | None = None,
                progress: Progress = None) -> dict[str, Readings]:

@@ -32,7 +32,8 @@ struct NotIdentified {
 NotIdentified find_not_in_model(const Study& study, const ErrorSet& model);
 
 /// @param result  usable, with its campaign
-NotIdentified find_not_identified(const Study& study, const StudyResult& result);
+/// @param advice  false: without the remedies
+NotIdentified find_not_identified(const Study& study, const StudyResult& result, bool advice = true);
 
 /// "EXX, all error motions of Y, squareness EC0Y": short.
 std::string not_identified_names(const Study& study, const NotIdentified& found);

@@ -62,6 +62,7 @@ const char* step_words(const Study& study, StudyStep step);
 struct RunOptions {
   bool accept_misfit = false;  ///< the result is to be used although it is distrusted; its errors file says so
   bool map = true;             ///< false: no map of the volumetric error
+  bool advice = true;          ///< false: not computed is which measurement would show what these readings leave open
   /// Called at the beginning of every step and during it, one call at a time but from any thread: done of total.
   std::function<void(StudyStep step, std::size_t done, std::size_t total)> progress{};
   std::stop_token stop{};  ///< looked at during every step

@@ -11,11 +11,18 @@ namespace abbe {
 /// Options of the solver as the study states them.
 IdentifyOptions identify_options(const Study& study);
 
+/// What an identification is done with besides its study; as in RunOptions.
+struct IdentificationJob {
+  ProgressCallback progress{};
+  std::stop_token stop{};
+  Summation summation{};
+  WorkDriver work{};
+  bool advice = true;
+};
+
 /// The identification of a study from its readings, with the volumetric error that it predicts; no map.
-/// @param summation, work  as in RunOptions
-/// @throws Stopped if `stop` asks for it; SumError if what the summation gives is refused
-void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress = {},
-                    const std::stop_token& stop = {}, const Summation& summation = {}, const WorkDriver& work = {});
+/// @throws Stopped if it was asked for; SumError if what the summation gives is refused
+void identify_study(const Study& study, StudyResult& result, const IdentificationJob& job = {});
 
 /// The readings that identify_study() identifies, with their model, in `result.model`: what another process needs to
 /// sum pieces of them (PieceSummer). Where the study chooses orders, the model is that of the largest ones.

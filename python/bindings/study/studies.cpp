@@ -41,7 +41,7 @@ void require_readings_of(const Setup& setup, const Machine& machine, const Machi
 }
 
 std::shared_ptr<StudyOutcome> run_whole(const Study& study, const std::map<std::string, PythonReadings>& readings,
-                                        const MachineErrors* truth, bool accept_misfit, bool map,
+                                        const MachineErrors* truth, bool accept_misfit, bool map, bool advice,
                                         const nb::object& progress) {
   auto outcome = std::make_shared<StudyOutcome>();
   outcome->study = study_with_data(study, readings, truth);
@@ -49,6 +49,7 @@ std::shared_ptr<StudyOutcome> run_whole(const Study& study, const std::map<std::
     RunOptions options;
     options.accept_misfit = accept_misfit;
     options.map = map;
+    options.advice = advice;
     options.stop = control.stop;
     options.progress = [&](StudyStep step, std::size_t done, std::size_t total) {
       control.progress(step_words(*outcome->study, step), done, total);
@@ -149,7 +150,7 @@ void bind_studies(nb::module_& module) {
              return instruments;
            })
       .def("run", &run_whole, nb::arg("readings"), nb::arg("truth").none(), nb::arg("accept_misfit"), nb::arg("map"),
-           nb::arg("progress").none())
+           nb::arg("advice"), nb::arg("progress").none())
       .def("gather", &gather, nb::arg("readings"), nb::arg("truth").none(), nb::arg("progress").none())
       .def("plan", &plan, nb::arg("progress").none());
   add_study_check(bound);

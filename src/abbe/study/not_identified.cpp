@@ -163,7 +163,7 @@ NotIdentified find_not_in_model(const Study& study, const ErrorSet& model) {
   return found;
 }
 
-NotIdentified find_not_identified(const Study& study, const StudyResult& result) {
+NotIdentified find_not_identified(const Study& study, const StudyResult& result, bool advice) {
   const ErrorSet& model = result.model.problem.errors;
   NotIdentified found = find_not_in_model(study, model);
   if (found.errors.empty()) return found;
@@ -172,7 +172,7 @@ NotIdentified find_not_identified(const Study& study, const StudyResult& result)
     const PoseList poses = poses_of(study, model);
     found.actual = volumetric_rms(study.machine, truth, errors_without(truth, found.errors), poses);
   }
-  add_remedies(study, result, found);
+  if (advice) add_remedies(study, result, found);
   return found;
 }
 

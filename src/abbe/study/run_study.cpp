@@ -46,7 +46,12 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
     result.warnings = result.campaign.warnings;
     return result;
   }
-  identify_study(study, result, begin(StudyStep::identify), options.stop, options.summation, options.work);
+  identify_study(study, result,
+                 {.progress = begin(StudyStep::identify),
+                  .stop = options.stop,
+                  .summation = options.summation,
+                  .work = options.work,
+                  .advice = options.advice});
   if (!result.usable()) {
     judge_trust(study, result);
     return result;

@@ -75,8 +75,7 @@ Problem prepared_problem(const Study& study) {
   return result.model.problem;
 }
 
-void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress,
-                    const std::stop_token& stop, const Summation& summation, const WorkDriver& work) {
+void identify_study(const Study& study, StudyResult& result, const IdentificationJob& job) {
   prepare_study(study, result);
   result.warnings = result.campaign.warnings;
   if (!result.model.impossible.empty()) {
@@ -87,7 +86,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
   const IdentificationPlan& plan = *study.identification;
   Problem& problem = result.model.problem;
   IdentifyOptions options = identify_options(study);
-  options.solver.stop = stop;
+  options.solver.stop = job.stop;
   if (!result.model.order_groups.empty()) {
     OrderSelectionOptions selection;
     selection.seed = study.seed;
@@ -98,7 +97,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
           "orders: no model of the range could be identified with poses held out; the largest orders are used");
     }
   }
-  options.solver.summation = summation;
+  options.solver.summation = job.summation;
   const VarianceComponentChoice variances{.variance_factor = plan.estimate_variance_factor,
                                           .pose_noise = plan.estimate_pose_noise || plan.estimate_block_noise,
                                           .by_block = plan.estimate_block_noise};
@@ -117,7 +116,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
   for (const GaugeConstraint& constraint : result.identification.gauge.constraints) {
     if (!constraint.by_convention) result.warnings.push_back(constraint.words + ": " + constraint.inseparable_words);
   }
-  if (result.identification.estimates.size() > 0) {
+  if (job.advice && result.identification.estimates.size() > 0) {
     result.advice = unseen_advice(problem, result.identification, possible_measurements(problem));
   }
   if (!result.usable()) return;
@@ -126,8 +125,8 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     monte_carlo_options.samples = static_cast<std::size_t>(plan.monte_carlo);
     monte_carlo_options.seed = study.seed;
     monte_carlo_options.threads = study.threads;
-    monte_carlo_options.stop = stop;
-    monte_carlo_options.work = work;
+    monte_carlo_options.stop = job.stop;
+    monte_carlo_options.work = job.work;
     monte_carlo_options.loss = options.loss;
     monte_carlo_options.loss_tuning = options.loss_tuning;
     result.monte_carlo =
@@ -152,9 +151,9 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
         "them",
         state.column, state.to));
   }
-  result.not_identified = find_not_identified(study, result);
+  result.not_identified = find_not_identified(study, result, job.advice);
   result.volumetric = study_volumetric_figures(study, result);
-  if (progress) progress(1, 1);
+  if (job.progress) job.progress(1, 1);
 }
 
 VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult& result) {

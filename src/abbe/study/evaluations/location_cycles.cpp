@@ -101,7 +101,7 @@ StudyResult whole_campaign(const Study& study, const Campaign& campaign, const s
   plain.identification->held_out_fraction = 0;
   StudyResult result;
   result.campaign = campaign;
-  identify_study(plain, result);
+  identify_study(plain, result, {.advice = false});
   if (!result.usable()) {
     throw InputError({.file = file}, "the whole campaign cannot be identified: " + result.identification.message,
                      "readings that determine the errors of the study");
