@@ -133,6 +133,9 @@ SumOfReadings MpiGroup::sum(PieceSummer& summer, const SumRequest& request, int 
     if (message.tag == kLeft) fail_left(message);
     if (message.tag != kSum) fail_other_work(i);
     parts.push_back(sum_from_bytes(message.bytes));
+    if (parts.back().point != parts.front().point || parts.back().selection != parts.front().selection) {
+      fail_other_work(i);
+    }
   }
   SumOfReadings all = merge_all(std::move(parts));
   const std::vector<std::byte> bytes = to_bytes(all);

@@ -21,7 +21,7 @@ class Runs:
     def __init__(self, arguments):
         self.abbe, self.mpirun = arguments.abbe, arguments.mpirun
         self.examples, self.out = arguments.examples, arguments.out
-        self.samples = 300000  # of a Monte Carlo that takes some 10 s
+        self.samples = 120000  # of a Monte Carlo that takes some 10 s
 
     def environment(self, **more):
         return {**os.environ, **ENVIRONMENT, **more}
