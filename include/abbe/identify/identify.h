@@ -63,6 +63,8 @@ struct IdentifyOptions {
   double loss_tuning = 0;               ///< tuning constant of the loss; 0: 95 % efficiency for normal noise
   bool scale_from_residuals = false;    ///< robust scale from the median of the residuals instead of 1
   double outlier_norm_quantile = 1e-4;  ///< a reading is listed as outlier beyond this exceedance of its chi-square
+  /// False: no outliers are listed, and no memory is taken per reading; for least squares only.
+  bool list_outliers = true;
   bool apply_variance_factor = false;   ///< multiply the covariance with chi-square / degrees of freedom; always stated
 };
 

@@ -17,6 +17,8 @@ namespace abbe {
 
 using ProgressCallback = std::function<void(std::size_t, std::size_t)>;
 
+class ReadingShards;
+
 /// What was known of a set-up's unknown before the measurement.
 struct KnownUnknown {
   std::size_t unknown = 0;          ///< index into Observations::unknowns()
@@ -30,15 +32,16 @@ std::vector<KnownUnknown> known_unknowns_of(const Instrument& device);
 /// One set-up of a study with its readings.
 struct CampaignSetup {
   std::string name;
-  std::string instrument;                    ///< as Setup::instrument
-  std::shared_ptr<const Instrument> device;  ///< as the study and the files of readings state it
-  std::shared_ptr<const Instrument> start;   ///< as the identification starts: `device` until find_start_values()
-  std::shared_ptr<const Instrument> truth;   ///< simulation: as it really is
-  InstrumentReadings readings;
-  InstrumentReadings exact;                 ///< simulation: the same readings without noise and outliers
-  std::vector<std::uint32_t> outliers;      ///< simulation: readings made to outliers
-  std::size_t hidden = 0;                   ///< simulation: sights left out for lack of a line of sight
-  std::vector<std::string> contradictions;  ///< in words, where a file of readings and the study differ
+  std::string instrument;                       ///< as Setup::instrument
+  std::shared_ptr<const Instrument> device;     ///< as the study and the files of readings state it
+  std::shared_ptr<const Instrument> start;      ///< as the identification starts: `device` until find_start_values()
+  std::shared_ptr<const Instrument> truth;      ///< simulation: as it really is
+  InstrumentReadings readings;                  ///< with `shards`: the part that is kept
+  std::shared_ptr<const ReadingShards> shards;  ///< all readings, where they are more than a study keeps
+  InstrumentReadings exact;                     ///< simulation: the same readings without noise and outliers
+  std::vector<std::uint32_t> outliers;          ///< simulation: readings made to outliers
+  std::size_t hidden = 0;                       ///< simulation: sights left out for lack of a line of sight
+  std::vector<std::string> contradictions;      ///< in words, where a file of readings and the study differ
   std::size_t judged_places = 0;   ///< by find_start_values(): from where readings can be compared with the machine
   std::optional<DriftPlan> drift;  ///< as Setup::drift; find_start_values() puts it into the readings
   std::shared_ptr<const SetupDrift> true_drift;  ///< simulation

@@ -267,7 +267,8 @@ class Run {
 
   void finish(const SolverResult& solved, const ConstrainedSpace* space) {
     result_.estimates = solved.estimates;
-    const std::vector<std::vector<double>> norms = stream_.norms(solved.estimates);
+    std::vector<std::vector<double>> norms;
+    if (options_.list_outliers || loss_.kind != LossKind::none) norms = stream_.norms(solved.estimates);
     NormalEquations unweighted;
     LossMoments moments;
     if (loss_.kind == LossKind::none) {

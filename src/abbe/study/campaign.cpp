@@ -11,6 +11,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/study/setup_drifts.h"
 #include "abbe/study/simulated_setup.h"
+#include "abbe/study/streamed_identification.h"
 
 namespace abbe {
 namespace {
@@ -185,7 +186,12 @@ Campaign gather_readings(const Study& study, const JobOptions& options) {
     if (campaign.truth) {
       simulate_setup(study, i, *campaign.truth, options, use, result);
     } else {
-      read_setup_files(study, setup, options.stop, use, result);
+      result.shards = shards_too_large(study, setup, options);
+      if (result.shards) {
+        take_shards(*study.identification, result, campaign.warnings);
+      } else {
+        read_setup_files(study, setup, options.stop, use, result);
+      }
     }
     warn_of_starts(study, campaign.truth ? &*campaign.truth : nullptr, setup.name, starts, campaign.warnings);
     result.start = result.device;

@@ -13,6 +13,7 @@
 #include "abbe/study/identified_expansions.h"
 #include "abbe/study/setup_drifts.h"
 #include "abbe/study/state_ranges.h"
+#include "abbe/study/streamed_identification.h"
 #include "abbe/verify/known_range.h"
 #include "abbe/verify/volumetric_figures.h"
 
@@ -102,7 +103,9 @@ void identify_study(const Study& study, StudyResult& result, const Identificatio
                                           .pose_noise = plan.estimate_pose_noise || plan.estimate_block_noise,
                                           .by_block = plan.estimate_block_noise};
   result.walks = walks_to_estimate(result.campaign, problem);
-  if (!result.walks.empty()) {
+  if (is_streamed(result.campaign)) {
+    identify_streamed(study, options, progress, result);
+  } else if (!result.walks.empty()) {
     result.identification = identify_with_walks(problem, result.walks, options);
   } else if (variances.any()) {
     result.weighed = identify_with_variances(problem, variances, options);

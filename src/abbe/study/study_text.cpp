@@ -12,6 +12,7 @@
 #include "abbe/study/found_values_words.h"
 #include "abbe/study/outlier_list.h"
 #include "abbe/study/residual_figures.h"
+#include "abbe/study/streamed_identification.h"
 #include "abbe/study/summary.h"
 
 namespace abbe {
@@ -82,7 +83,7 @@ std::string variances_text(const VarianceComponents& components) {
 std::string study_text(const Study& study, const StudyResult& result, const char* shows_all) {
   std::string text = fmt::format("{}: {}   ({})\n", study.name, study.machine.name, study.machine.chain());
   if (result.campaign.truth) text += "simulated: the true errors are known\n";
-  text += fmt::format("{} readings\n", result.campaign.reading_count());
+  text += fmt::format("{} readings\n", all_reading_count(result.campaign));
   for (const std::string& warning : result.warnings) text += fmt::format("warning: {}\n", warning);
   for (const Distrust& reason : result.distrusted) text += fmt::format("not to be trusted: {}\n", reason.text);
   if (!study.identification) return text;

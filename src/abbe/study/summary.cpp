@@ -19,6 +19,7 @@
 #include "abbe/study/outlier_list.h"
 #include "abbe/study/residual_figures.h"
 #include "abbe/study/state_ranges.h"
+#include "abbe/study/streamed_identification.h"
 #include "abbe/study/trust.h"
 
 namespace abbe {
@@ -141,14 +142,14 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
   for (std::size_t s = 0; s < study.setups.size() && s < result.campaign.setups.size(); ++s) {
     json["setups"].push_back({{"name", study.setups[s].name},
                               {"instrument", study.setups[s].instrument},
-                              {"readings", result.campaign.setups[s].reading_count()}});
+                              {"readings", all_reading_count(result.campaign.setups[s])}});
   }
   if (study.identification) {
     const Identification& identified = result.identification;
     json["verdict"] = study_verdict(study, result);
     json["status"] = status_text(identified.status);
     json["converged"] = result.usable();
-    json["readings"] = result.campaign.reading_count();
+    json["readings"] = all_reading_count(result.campaign);
     if (result.usable()) {
       json["trusted"] = result.distrusted.empty();
       if (!result.distrusted.empty()) {

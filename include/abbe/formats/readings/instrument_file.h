@@ -28,9 +28,14 @@ struct InstrumentFileForm {
   InstrumentFile (*read)(const std::filesystem::path& path, const Machine& machine,
                          const std::shared_ptr<const Instrument>& device, const std::string& setup,
                          bool noise_from_data, const MeasurementOptions& options);
+  /// The same of text. @param file  name for messages
+  InstrumentFile (*parse)(std::string_view content, const std::string& file, const Machine& machine,
+                          const std::shared_ptr<const Instrument>& device, const std::string& setup,
+                          bool noise_from_data, const MeasurementOptions& options);
   std::string (*text)(const Machine& machine, const Instrument& device, const InstrumentReadings& readings);
   constexpr InstrumentFileForm();
-  constexpr InstrumentFileForm(decltype(read) how, decltype(text) back) : read(how), text(back) {}
+  constexpr InstrumentFileForm(decltype(read) how, decltype(parse) of_text, decltype(text) back)
+      : read(how), parse(of_text), text(back) {}
 };
 
 /// Reads readings of any instrument from CSV: axis columns (X_mm, C_deg), `item` (not needed if there is one), the
@@ -50,6 +55,11 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
 InstrumentFile read_instrument_file(const std::filesystem::path& path, const Machine& machine,
                                     const std::shared_ptr<const Instrument>& device, const std::string& setup,
                                     bool noise_from_data, const MeasurementOptions& options);
+
+/// As InstrumentFileForm::parse.
+InstrumentFile parse_instrument_file(std::string_view text, const std::string& file, const Machine& machine,
+                                     const std::shared_ptr<const Instrument>& device, const std::string& setup,
+                                     bool noise_from_data, const MeasurementOptions& options);
 
 /// Whether a reading of the instrument carries its orientation as a quaternion: inputs qw, qx, qy, qz.
 bool has_orientation(const Instrument& instrument);
@@ -71,6 +81,7 @@ InstrumentFile given_readings(const InstrumentReadings& readings, const Machine&
                               const std::shared_ptr<const Instrument>& device, const std::string& setup,
                               bool noise_from_data);
 
-constexpr InstrumentFileForm::InstrumentFileForm() : read(read_instrument_file), text(instrument_readings_text) {}
+constexpr InstrumentFileForm::InstrumentFileForm()
+    : read(read_instrument_file), parse(parse_instrument_file), text(instrument_readings_text) {}
 
 }  // namespace abbe

@@ -179,14 +179,15 @@ struct IdentificationPlan {
   /// An error motion is stated up to the end of its range where the gap to the outermost reading is at most this much
   /// of the range of the readings.
   double coverage_margin_percent = 2;
-  bool select_order = false;     ///< some motion without a state has smallest_order < basis.order
-  bool select_terms = false;     ///< some term with a state is optional, or its order is to be selected
-  bool rank_sensors = false;     ///< of the states, by held-out blocks of time
-  std::size_t time_blocks = 20;  ///< held out one after the other for that choice
-  double ageing_length = 0;      ///< mm/sqrt(s), how errors wander after their measurement; for the errors file
-  double ageing_angle = 0;       ///< rad/sqrt(s)
-  double time_gap_s = 0;         ///< readings nearer than this to a block take no part in the fit without it
-  int monte_carlo = 0;           ///< simulated identifications; 0: none
+  bool select_order = false;           ///< some motion without a state has smallest_order < basis.order
+  bool select_terms = false;           ///< some term with a state is optional, or its order is to be selected
+  bool rank_sensors = false;           ///< of the states, by held-out blocks of time
+  std::size_t time_blocks = 20;        ///< held out one after the other for that choice
+  double ageing_length = 0;            ///< mm/sqrt(s), how errors wander after their measurement; for the errors file
+  double ageing_angle = 0;             ///< rad/sqrt(s)
+  double time_gap_s = 0;               ///< readings nearer than this to a block take no part in the fit without it
+  std::size_t readings_in_memory = 0;  ///< if there are more, they are read again for every sum; 0: all in memory
+  int monte_carlo = 0;                 ///< simulated identifications; 0: none
 };
 
 /// Where the volumetric error is predicted.

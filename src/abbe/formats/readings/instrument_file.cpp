@@ -102,16 +102,22 @@ InstrumentReadings read_instrument_readings(const std::filesystem::path& path, c
 }
 
 InstrumentFile read_instrument_file(const std::filesystem::path& path, const Machine& machine,
-                                    const std::shared_ptr<const Instrument>& device, const std::string&,
+                                    const std::shared_ptr<const Instrument>& device, const std::string& setup,
                                     bool noise_from_data, const MeasurementOptions& options) {
-  InstrumentFile file{device, read_instrument_readings(path, machine, *device, options), {}};
+  const MappedFile file(path);
+  return parse_instrument_file(file.text(), path.string(), machine, device, setup, noise_from_data, options);
+}
+
+InstrumentFile parse_instrument_file(std::string_view text, const std::string& name, const Machine& machine,
+                                     const std::shared_ptr<const Instrument>& device, const std::string&,
+                                     bool noise_from_data, const MeasurementOptions& options) {
+  InstrumentFile file{device, parse_instrument_readings(text, name, machine, *device, options), {}};
   if (!noise_from_data) {
     file.readings.uncertainty.clear();
     file.readings.covariance.clear();
   } else if (file.readings.uncertainty.empty() && file.readings.covariance.empty()) {
     const ReadingComponent& first = device->components().front();
-    throw InputError({.file = path.string()},
-                     "the study takes the noise from the data, but the file states no uncertainties",
+    throw InputError({.file = name}, "the study takes the noise from the data, but the file states no uncertainties",
                      fmt::format("columns such as u_{}_{}", first.name, first.is_angle ? "arcsec" : "um"));
   }
   return file;

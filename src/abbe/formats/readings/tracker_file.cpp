@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "abbe/formats/files/text_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/instruments/trackers/laser_tracker.h"
 
@@ -86,12 +87,19 @@ const LaserTracker& as_tracker(const Instrument& device) { return static_cast<co
 InstrumentFile read_tracker_file(const std::filesystem::path& path, const Machine& machine,
                                  const std::shared_ptr<const Instrument>& device, const std::string& setup,
                                  bool noise_from_data, const MeasurementOptions& options) {
+  const MappedFile file(path);
+  return parse_tracker_file(file.text(), path.string(), machine, device, setup, noise_from_data, options);
+}
+
+InstrumentFile parse_tracker_file(std::string_view text, const std::string& name, const Machine& machine,
+                                  const std::shared_ptr<const Instrument>& device, const std::string& setup,
+                                  bool noise_from_data, const MeasurementOptions& options) {
   const LaserTracker& given = as_tracker(*device);
-  const MeasurementTable table = read_measurements(path, machine, options);
+  const MeasurementTable table = parse_measurements(text, name, machine, options);
   TrackerSetup tracker = given.setup();
   InstrumentFile file;
   const TrackerReadings readings =
-      readings_from_table(table, setup, noise_from_data, path.string(), tracker, file.contradictions);
+      readings_from_table(table, setup, noise_from_data, name, tracker, file.contradictions);
   const auto with_file =
       std::make_shared<LaserTracker>(given.name(), std::move(tracker), readings.measure, given.stated());
   file.readings = with_file->instrument_readings(readings);

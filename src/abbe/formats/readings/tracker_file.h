@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "abbe/formats/readings/instrument_file.h"
 
@@ -16,6 +17,11 @@ namespace abbe {
 InstrumentFile read_tracker_file(const std::filesystem::path& path, const Machine& machine,
                                  const std::shared_ptr<const Instrument>& device, const std::string& setup,
                                  bool noise_from_data, const MeasurementOptions& options);
+
+/// The same of text. @param file  name for messages
+InstrumentFile parse_tracker_file(std::string_view text, const std::string& file, const Machine& machine,
+                                  const std::shared_ptr<const Instrument>& device, const std::string& setup,
+                                  bool noise_from_data, const MeasurementOptions& options);
 
 /// The readings of a LaserTracker as a measurement file.
 std::string tracker_file_text(const Machine& machine, const Instrument& device, const InstrumentReadings& readings);

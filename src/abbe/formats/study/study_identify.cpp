@@ -337,6 +337,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
   if (table.has("held_out_file")) plan.held_out_file = folder / table.text("held_out_file");
   table.text_or("held_out_file", "");
   plan.monte_carlo = static_cast<int>(table.integer_or("monte_carlo", 0, 0, 10'000'000));
+  plan.readings_in_memory = static_cast<std::size_t>(table.integer_or("readings_in_memory", 0, 0, 1'000'000'000));
   table.finish();
   const bool no_motion = std::all_of(plan.motions.begin(), plan.motions.end(), [](const IdentifiedMotion& motion) {
     return motion.expansion && motion.expansion->coefficient.knowledge == Knowledge::exact;

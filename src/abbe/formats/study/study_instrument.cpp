@@ -8,7 +8,7 @@ namespace abbe {
 namespace {
 
 constexpr InstrumentForm kForms[] = {
-    {"tracker", read_tracker, {read_tracker_file, tracker_file_text}},
+    {"tracker", read_tracker, {read_tracker_file, parse_tracker_file, tracker_file_text}},
     {"ball-bar", read_ball_bar},
     {"r-test", read_r_test},
     {"surface-probe", read_surface_probe},

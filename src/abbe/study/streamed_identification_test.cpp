@@ -1,0 +1,203 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/readings/reading_shards.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/study/example_file_for_test.h"
+#include "abbe/study/run_study.h"
+#include "abbe/study/study_steps.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+
+/// A ball bar on a trunnion mill, its readings in files: 40 times those of the example, with a line of its own each.
+class StreamedReadings : public testing::Test {
+ protected:
+  StreamedReadings() {
+    folder_ = std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    study_ = read_study(test::example_file("trunnion/ball-bar.study.toml"));
+    const Campaign campaign = gather_readings(study_);
+    const std::string text = campaign.setups[0].readings_text(study_.machine);
+    const std::size_t end = text.find('\n') + 1;
+    header_ = text.substr(0, end);
+    rows_ = text.substr(end);
+    study_.simulation.reset();
+    study_.identification->held_out_fraction = 0;
+    study_.output = folder_ / "results";
+    give({{"a.csv", repeated(17)}, {"b.csv", "# the second day\n" + repeated(23)}});
+  }
+  ~StreamedReadings() override { std::filesystem::remove_all(folder_); }
+
+  std::string repeated(int times) const {
+    std::string text = header_;
+    for (int i = 0; i < times; ++i) text += rows_;
+    return text;
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  void give(const std::vector<std::pair<std::string, std::string>>& files) {
+    study_.setups[0].data.clear();
+    for (const auto& [name, text] : files) {
+      write(name, text);
+      study_.setups[0].data.emplace_back().file = folder_ / name;
+    }
+  }
+  StudyResult run(std::size_t in_memory, const RunOptions& options = {.map = false}) {
+    study_.identification->readings_in_memory = in_memory;
+    return run_study(study_, options);
+  }
+  std::string refusal() {
+    try {
+      run(1000);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  std::filesystem::path journal() const { return folder_ / "results.sums"; }
+
+  std::filesystem::path folder_;
+  Study study_;
+  std::string header_, rows_;
+};
+
+void expect_same(const Identification& a, const Identification& b) {
+  EXPECT_EQ(a.status, b.status);
+  ASSERT_EQ(a.estimates.size(), b.estimates.size());
+  EXPECT_EQ(a.estimates, b.estimates);
+  EXPECT_EQ(a.covariance, b.covariance);
+  EXPECT_EQ(a.statistics.chi_square, b.statistics.chi_square);
+  EXPECT_EQ(a.statistics.degrees_of_freedom, b.statistics.degrees_of_freedom);
+}
+
+TEST_F(StreamedReadings, GiveTheBytesOfThoseInMemory) {
+  const StudyResult in_memory = run(0), small_enough = run(1'000'000), streamed = run(1000);
+  ASSERT_EQ(in_memory.identification.status, IdentifyStatus::converged);
+  EXPECT_EQ(small_enough.campaign.setups[0].shards, nullptr);
+  ASSERT_NE(streamed.campaign.setups[0].shards, nullptr);
+  EXPECT_EQ(streamed.campaign.setups[0].shards->count(), in_memory.campaign.reading_count());
+  EXPECT_LT(streamed.campaign.reading_count(), 1300U);
+  expect_same(in_memory.identification, small_enough.identification);
+  expect_same(in_memory.identification, streamed.identification);
+  EXPECT_FALSE(std::filesystem::exists(journal()));
+  EXPECT_THAT(streamed.warnings, testing::Contains(HasSubstr("are read again for every sum")));
+}
+
+TEST_F(StreamedReadings, CountTheOutliersOfAllReadings) {
+  const std::string middle = repeated(17);
+  const std::size_t row = middle.find('\n', middle.size() / 2) + 1;
+  std::string wrong = middle;
+  std::size_t length = row;  // behind five axes and the item
+  for (int comma = 0; comma < 6; ++comma) length = wrong.find(',', length) + 1;
+  const double read = std::stod(wrong.substr(length));
+  wrong.replace(length, wrong.find(',', length) - length, std::to_string(read + 0.5));
+  const auto reading = std::count(middle.begin(), middle.begin() + static_cast<std::ptrdiff_t>(row), '\n') - 1;
+  give({{"a.csv", repeated(3)}, {"b.csv", wrong}});
+  const StudyResult result = run(1000);
+  EXPECT_THAT(result.warnings, testing::Contains(testing::AllOf(HasSubstr("readings are outliers"),
+                                                                HasSubstr("reading " + std::to_string(reading) +
+                                                                          " of " + (folder_ / "b.csv").string()))));
+}
+
+TEST_F(StreamedReadings, AreRefusedIfAFileWasCutOff) {
+  std::string text = repeated(20);
+  text.resize(text.size() - 3);
+  write("b.csv", text);
+  EXPECT_THAT(refusal(), HasSubstr("b.csv:"));
+  EXPECT_THAT(refusal(), HasSubstr("ends within a row"));
+}
+
+TEST_F(StreamedReadings, AreRefusedIfAFileIsGivenTwice) {
+  write("b.csv", repeated(17));
+  EXPECT_THAT(refusal(), HasSubstr("b.csv: has the same content as"));
+  study_.setups[0].data[1].file = folder_ / "." / "a.csv";
+  EXPECT_THAT(refusal(), HasSubstr("is given twice"));
+}
+
+TEST_F(StreamedReadings, NameTheLineOfABadField) {
+  std::string text = repeated(20);
+  const std::size_t row = text.find('\n', text.size() * 9 / 10) + 1;
+  const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(row), '\n') + 1;
+  text.insert(row, "x");
+  write("b.csv", text);
+  EXPECT_THAT(refusal(), HasSubstr("b.csv:" + std::to_string(line) + ":"));
+}
+
+TEST_F(StreamedReadings, AreRefusedIfAFileChangesDuringTheRun) {
+  for (const bool shorter : {true, false}) {
+    give({{"a.csv", repeated(40)}});
+    bool changed = false;
+    const auto change = [&](StudyStep step, std::size_t done, std::size_t) {
+      if (step != StudyStep::identify || done == 0 || changed) return;
+      changed = true;
+      std::string text = repeated(40);
+      if (shorter) {
+        std::filesystem::resize_file(folder_ / "a.csv", text.size() / 2);
+      } else {
+        const std::size_t digit = text.find_last_of("123456789");
+        text[digit] = text[digit] == '9' ? '8' : '9';
+        std::fstream(folder_ / "a.csv", std::ios::in | std::ios::out) << text;
+      }
+    };
+    try {
+      run(1000, {.map = false, .progress = change});
+      FAIL() << "the change was not seen";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(shorter ? "has become shorter" : "has changed since"));
+    }
+    std::filesystem::remove(journal());
+  }
+}
+
+TEST_F(StreamedReadings, GoOnFromTheSumsOfARunThatWasStopped) {
+  const StudyResult whole = run(1000);
+  std::stop_source stop;
+  int steps = 0;
+  const auto stop_later = [&](StudyStep step, std::size_t, std::size_t) {
+    if (step == StudyStep::identify && ++steps == 60) stop.request_stop();
+  };
+  EXPECT_THROW(run(1000, {.map = false, .progress = stop_later, .stop = stop.get_token()}), Stopped);
+  ASSERT_TRUE(std::filesystem::exists(journal()));
+  // Killed while it wrote a record.
+  std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);
+  const StudyResult resumed = run(1000);
+  EXPECT_THAT(resumed.warnings, testing::Contains(HasSubstr("goes on from")));
+  expect_same(whole.identification, resumed.identification);
+  EXPECT_FALSE(std::filesystem::exists(journal()));
+}
+
+TEST_F(StreamedReadings, TakeNoSumsOfAnotherModel) {
+  std::stop_source stop;
+  const auto stop_later = [&](StudyStep step, std::size_t done, std::size_t total) {
+    if (step == StudyStep::identify && done == total && total > 1) stop.request_stop();
+  };
+  EXPECT_THROW(run(1000, {.map = false, .progress = stop_later, .stop = stop.get_token()}), Stopped);
+  ASSERT_TRUE(std::filesystem::exists(journal()));
+  for (IdentifiedMotion& motion : study_.identification->motions) {
+    if (motion.basis.kind == BasisKind::legendre) motion.basis.kind = BasisKind::chebyshev;
+  }
+  const StudyResult resumed = run(1000);
+  const StudyResult fresh = run(1000);
+  expect_same(fresh.identification, resumed.identification);
+}
+
+TEST_F(StreamedReadings, AreRefusedWhereAllAreNeededInMemory) {
+  study_.identification->held_out_fraction = 0.1;
+  EXPECT_THAT(refusal(), HasSubstr("identify.held_out_fraction: holding out readings needs all readings in memory"));
+  study_.identification->held_out_fraction = 0;
+  study_.identification->monte_carlo = 100;
+  EXPECT_THAT(refusal(), HasSubstr("identify.monte_carlo"));
+}
+
+}  // namespace
+}  // namespace abbe
