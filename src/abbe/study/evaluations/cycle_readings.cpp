@@ -18,6 +18,10 @@ std::vector<TimedReading> readings_in_time(const Campaign& campaign, const std::
   std::vector<TimedReading> all;
   for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
     const CampaignSetup& setup = campaign.setups[s];
+    if (setup.shards) {
+      throw InputError({.file = file, .field = "identify.readings_in_memory"},
+                       "cycles need all readings of " + setup.name + " in memory", "no such key, or a larger number");
+    }
     if (setup.readings.time_s.empty()) {
       throw InputError({.file = file, .field = setup.name}, "the readings have no times", "a column time_s");
     }
