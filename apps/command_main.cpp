@@ -125,7 +125,7 @@ int command_main(int argc, const char* const* argv, const std::function<void(Com
   make_standard_output_printable();
   end_cleanly_when_interrupted([](int /*signal*/) {
     if (isatty(STDERR_FILENO) == 1) draw("\r\x1b[K");
-    tell("abbe: interrupted; what was not finished is removed\n");
+    tell("abbe: interrupted; outputs that were not finished are removed\n");
     tell_complete_outputs();
   });
   end_where_an_input_was_cut_short(kBadInput);

@@ -148,7 +148,7 @@ TEST_F(Interruption, AProgramThatTookThePlaceOfTheCommandEndsLikeIt) {
   const CommandResult result = interrupted({"reproduce", "aguado", "-o", "results"}, SIGINT, computes);
   ASSERT_TRUE(result.signalled) << "it ended before: exit code " << result.exit_code << ", " << result.err;
   EXPECT_EQ(result.exit_code, 130);
-  EXPECT_EQ(result.err, "abbe: interrupted; what was not finished is removed\n");
+  EXPECT_EQ(result.err, "abbe: interrupted; outputs that were not finished are removed\n");
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(names(), testing::IsEmpty());
 }
@@ -221,7 +221,7 @@ TEST_F(Interruption, SaysWhatWasCompleteBefore) {
                      folder.path(), SIGINT, [&](pid_t) { return fs::exists(folder.path() / "cone.csv"); });
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_EQ(result.err,
-            "abbe: interrupted; what was not finished is removed\n"
+            "abbe: interrupted; outputs that were not finished are removed\n"
             "abbe: complete before that: cone.csv\n");
 }
 
