@@ -22,7 +22,7 @@ def _circle(plane: str, first: float, last: float, points: int) -> dict[str, Any
             "points": points, "repeats": 2, "there_and_back": True}
 
 
-# The bar is calibrated before every test. In the tracker's campaign, its station creeps on the table: a drift of its set-up.
+# The bar is calibrated before every test. The tracker's station creeps on the table: a drift of its set-up.
 BALL_BAR = {
     "threads": 1, "simulate": {"interval_s": 1, "generator": {"mean_volumetric_um": 1}}, "report": {"page": False},
     "setup": [{
@@ -67,8 +67,8 @@ class Kind:
 
 
 KINDS = (
-    Kind("ball-bar", BALL_BAR, 0, 7, ("EXX[P1]", "EYY[P1]", "EZZ[P1]", "EC0Y", "EA0Z", "EB0Z", "reversal_X", "reversal_Y",
-                                      "reversal_Z"), dict.fromkeys("XYZ", RADIUS_MM)),
+    Kind("ball-bar", BALL_BAR, 0, 7, ("EXX[P1]", "EYY[P1]", "EZZ[P1]", "EC0Y", "EA0Z", "EB0Z", "reversal_X",
+                                      "reversal_Y", "reversal_Z"), dict.fromkeys("XYZ", RADIUS_MM)),
     Kind("tracker", TRACKER, 2, 28, ("EXX[P1]", "EYY[P1]", "EZZ[P1]", "EC0Y", "EA0Z", "EB0Z",
                                      *(f"{name}[P2]" for name in ("EXX", "EYY", "EZZ", *STRAIGHTNESS))), HALF_MM),
 )
@@ -151,8 +151,8 @@ def add_missing(mill: abbe.Machine, kind: Kind, machine: SimulatedMachine, path:
 
 def scatter_covariance(kind: Kind) -> np.ndarray:
     """What varies between campaigns beside the noise: the temperature, which makes all scales longer together."""
-    along = np.array([EXPANSION_UM_PER_M_K * TEMPERATURE_K * 1e-6 * kind.half_mm[name[2]] if name.endswith("[P1]") else 0
-                      for name in kind.followed])
+    per_mm = EXPANSION_UM_PER_M_K * TEMPERATURE_K * 1e-6
+    along = np.array([per_mm * kind.half_mm[name[2]] if name.endswith("[P1]") else 0 for name in kind.followed])
     return np.outer(along, along)
 
 

@@ -4,7 +4,7 @@
     python3 fleet.py run FOLDER                     two Dask workers on this computer
     python3 fleet.py run FOLDER --scheduler tcp://host:8786
     python3 fleet.py shard FOLDER --index 3         one shard without Dask, such as a task of a Slurm array
-    python3 fleet.py page FOLDER                    gathers the shards: fleet.json, machines.json, score.json, index.html
+    python3 fleet.py page FOLDER                    gathers the shards: machines.json, score.json, index.html
 
 Done work is not done again: start the same command again after a kill. README.md says what is in the folder.
 """
@@ -48,7 +48,8 @@ def run_with_dask(folder: Path, settings: Settings, workers: int, scheduler: str
         futures = client.map(shard_task, [str(folder)] * len(todo), [settings] * len(todo), todo, pure=False)
         for done, future in enumerate(as_completed(futures), 1):
             added += future.result()
-            print(f"{done} of {len(todo)} shards, {added} campaigns added, {time.perf_counter() - begin:.0f} s", flush=True)
+            spent = time.perf_counter() - begin
+            print(f"{done} of {len(todo)} shards, {added} campaigns added, {spent:.0f} s", flush=True)
     if cluster:
         cluster.close()
     wall = {"wall_s": time.perf_counter() - begin, "campaigns": added, "workers": workers if not scheduler else None}
@@ -95,9 +96,11 @@ def arguments() -> argparse.Namespace:
 def main() -> int:
     given = arguments()
     folder = given.folder.resolve()
-    stated = json.loads((folder / "fleet.json").read_text()) if given.step == "page" and (folder / "fleet.json").exists() else {}
-    settings = Settings(**(stated or {field.name: getattr(given, field.name) for field in fields(Settings)}))
+    settings = Settings(**{field.name: getattr(given, field.name) for field in fields(Settings)})
     if given.step == "page":
+        if not (folder / "fleet.json").exists():
+            raise SystemExit(f"fleet: {folder} holds no fleet; expected the folder of an earlier run")
+        settings = Settings(**json.loads((folder / "fleet.json").read_text()))
         write_page(folder, settings, not given.no_times)
         return 0
     claim(folder, settings)

@@ -30,7 +30,8 @@ p { max-width: 46rem; overflow-wrap: anywhere; } .soft { color: var(--soft); fon
 th, td { text-align: left; padding: 0.35rem 0.9rem 0.35rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--soft); font-weight: 500; } .n { text-align: right; white-space: nowrap; } td svg { display: block; }
 svg .line { fill: none; stroke: var(--accent); stroke-width: 1.5; } svg .limit { stroke: var(--bad); stroke-dasharray: 3 3; }
-svg .box { fill: var(--accent); } svg text { fill: var(--soft); font-size: 11px; } svg .axis { stroke: var(--line); } .delays { width: 100%; max-width: 40rem; }
+svg .box { fill: var(--accent); } svg text { fill: var(--soft); font-size: 11px; } svg .axis { stroke: var(--line); }
+.delays { width: 100%; max-width: 40rem; }
 :focus-visible { outline: 2px solid var(--accent); }
 @media (max-width: 40rem) {
   .cards thead { position: absolute; clip-path: inset(50%); width: 1px; height: 1px; overflow: hidden; }
@@ -75,24 +76,31 @@ def histogram(delays: list[int], weeks: int = 26) -> str:
     for delay in delays:
         counts[min(delay // 7, weeks)] += 1
     top = max(counts) or 1
-    bars = "".join(f'<rect class="box" x="{20 + 20 * k}" y="{90 - 80 * n / top:.1f}" width="16" height="{80 * n / top:.1f}"/>'
-                   for k, n in enumerate(counts))
+    heights = [80 * n / top for n in counts]
+    bars = "".join(f'<rect class="box" x="{20 + 20 * k}" y="{90 - height:.1f}" width="16" height="{height:.1f}"/>'
+                   for k, height in enumerate(heights))
     labels = "".join(f'<text x="{28 + 20 * k}" y="105" text-anchor="middle">{k}{"+" if k == weeks else ""}</text>'
                      for k in range(0, weeks + 1, 2))
     return (f'<svg viewBox="0 0 570 110" class="delays" role="img" aria-label="detection delays in weeks">{bars}'
             f'<line class="axis" x1="18" x2="562" y1="90" y2="90"/>{labels}<text x="18" y="10">{top}</text></svg>')
 
 
+def service_row(row: dict[str, Any], alarm: dict[str, Any]) -> list[str]:
+    unit = "&micro;rad" if alarm["unit"] == "urad" else "&micro;m"
+    return [str(row["machine"]),
+            f"<div>{escape(alarm['error'])}<br><span class=\"soft\">{escape(alarm['words'])}</span></div>",
+            f"{alarm['change']:+.1f} &plusmn; {alarm['expanded_uncertainty']:.1f} {unit}",
+            f"{alarm['at_tool_um']:.1f} &micro;m", date_of(alarm["since"]), date_of(alarm["day"]),
+            escape(alarm["kind"]), chart(row[alarm["kind"]])]
+
+
 def service_table(rows: list[dict[str, Any]]) -> str:
-    found = [(row, alarm_of(row)) for row in rows]
-    listed = sorted(((row, alarm) for row, alarm in found if alarm), key=lambda each: (-each[1]["at_tool_um"], each[0]["machine"]))
-    if not listed:
+    found = [(row, alarm) for row, alarm in ((row, alarm_of(row)) for row in rows) if alarm]
+    if not found:
         return "<p>None.</p>"
-    lines = [[str(row["machine"]), f"<div>{escape(alarm['error'])}<br><span class=\"soft\">{escape(alarm['words'])}</span></div>",
-              f"{alarm['change']:+.1f} &plusmn; {alarm['expanded_uncertainty']:.1f} {'&micro;rad' if alarm['unit'] == 'urad' else '&micro;m'}",
-              f"{alarm['at_tool_um']:.1f} &micro;m", date_of(alarm["since"]), date_of(alarm["day"]), escape(alarm["kind"]),
-              chart(row[alarm["kind"]])] for row, alarm in listed]
-    return table(["Machine", "Error", "Change, U (k = 2)", "At the tool", "After", "Alarm", "By", "Chart"], lines, {0, 2, 3}, True)
+    found.sort(key=lambda each: (-each[1]["at_tool_um"], each[0]["machine"]))
+    head = ["Machine", "Error", "Change, U (k = 2)", "At the tool", "After", "Alarm", "By", "Chart"]
+    return table(head, [service_row(row, alarm) for row, alarm in found], {0, 2, 3}, True)
 
 
 def times_section(times: list[dict[str, Any]]) -> str:
@@ -100,9 +108,10 @@ def times_section(times: list[dict[str, Any]]) -> str:
     if not shards:
         return ""
     campaigns = sum(one["campaigns"] for one in shards) or 1
-    lines = [[name, f"{sum(one[key] for one in shards):.0f} s", f"{1e3 * sum(one[key] for one in shards) / campaigns:.1f} ms"]
-             for name, key in (("simulated readings", "measure_s"), ("identification", "identify_s"),
-                               ("histories", "history_s"), ("charts and comparisons", "judge_s"))]
+    spent = {name: sum(one[key] for one in shards) for name, key in (
+        ("simulated readings", "measure_s"), ("identification", "identify_s"), ("histories", "history_s"),
+        ("charts and comparisons", "judge_s"))}
+    lines = [[name, f"{seconds:.0f} s", f"{1e3 * seconds / campaigns:.1f} ms"] for name, seconds in spent.items()]
     wall = sum(one.get("wall_s", 0) for one in times)
     done = sum(one["campaigns"] for one in times if "wall_s" in one)
     rate = f"<p>{done} campaigns in {wall:.0f} s: {done / wall:.1f} a second.</p>" if wall > 0 and done else ""
@@ -113,9 +122,10 @@ def events_table(score: dict[str, Any]) -> str:
     def quantile(delays: list[int], share: float) -> str:
         return f"{delays[min(int(share * len(delays)), len(delays) - 1)]} d" if delays else "none"
     lines = [[escape(name), str(one["machines"]), str(one["detected"]), str(one["undetected"]), str(one["before"]),
-              quantile(one["delays_days"], 0.5), quantile(one["delays_days"], 0.9)] for name, one in score["events"].items()]
-    return table(["Event", "Machines", "Detected", "Undetected", "Alarm before it", "Median delay", "90 % within"], lines,
-                 {1, 2, 3, 4, 5, 6}, True)
+              quantile(one["delays_days"], 0.5), quantile(one["delays_days"], 0.9)]
+             for name, one in score["events"].items()]
+    head = ["Event", "Machines", "Detected", "Undetected", "Alarm before it", "Median delay", "90 % within"]
+    return table(head, lines, {1, 2, 3, 4, 5, 6}, True)
 
 
 def figures(settings: Settings, score: dict[str, Any]) -> str:
@@ -125,12 +135,18 @@ def figures(settings: Settings, score: dict[str, Any]) -> str:
     shown = [(str(score["alarms"]), f"of {settings.machines} machines need service"),
              (f"{100 * alarms['share']:.2f} %", f"false alarms in {settings.weeks} weeks; expected at most "
                                                f"{100 * alarms['expected']:.2f} %"),
-             (f"{sum(one['detected'] for one in events)} of {sum(one['machines'] for one in events)}", "events detected"),
+             (f"{len(delays)} of {sum(one['machines'] for one in events)}", "events detected"),
              (f"{sorted(delays)[len(delays) // 2]} d" if delays else "none", "median detection delay")]
-    return '<div class="figures">' + "".join(f"<div><b>{big}</b><span>{small}</span></div>" for big, small in shown) + "</div>"
+    boxes = "".join(f"<div><b>{big}</b><span>{small}</span></div>" for big, small in shown)
+    return f'<div class="figures">{boxes}</div>'
 
 
-def page_html(settings: Settings, rows: list[dict[str, Any]], score: dict[str, Any], times: list[dict[str, Any]]) -> str:
+def percent(share: float) -> str:
+    return f"{100 * share:.2f}"
+
+
+def page_html(settings: Settings, rows: list[dict[str, Any]], score: dict[str, Any],
+              times: list[dict[str, Any]]) -> str:
     alarms = score["false_alarms"]
     squares = score["mean_square_of_innovations"]
     delays = [delay for one in score["events"].values() for delay in one["delays_days"]]
@@ -140,19 +156,20 @@ def page_html(settings: Settings, rows: list[dict[str, Any]], score: dict[str, A
 <meta http-equiv="Content-Security-Policy" content="{POLICY}">
 <title>Fleet: machines that need service</title><style>{STYLE}</style></head><body><main>
 <h1>Machines that need service</h1>
-<p class="soft">{settings.machines} simulated machines, {date_of(0)} to {date_of(7 * settings.weeks - 1)}; ball bar every week,
-tracker every four weeks. Seed {settings.seed}.</p>
+<p class="soft">{settings.machines} simulated machines, {date_of(0)} to {date_of(7 * settings.weeks - 1)}; ball bar
+every week, tracker every four weeks. Seed {settings.seed}.</p>
 {figures(settings, score)}
 <h2>Need service now</h2>
 <p class="soft">The error that changed most, against its expanded uncertainty, from the last campaign before the change
 (After) to the alarm. The largest effect at the tool is first. Chart: average of the innovations, with its limit.</p>
 {service_table(rows)}
 <h2>Against the truth</h2>
-<p>False alarms: {alarms['machines']} of {alarms['of']} machines without an event ({100 * alarms['share']:.2f} %; 95 % interval
-{100 * alarms['interval'][0]:.2f} to {100 * alarms['interval'][1]:.2f} %) in {alarms['years']:.1f} machine-years. Expected from the rule:
-{100 * alarms['expected_at_least']:.2f} to {100 * alarms['expected']:.2f} %. A machine with an event had an alarm before it {score['before_event']} times.</p>
-<p>Mean square of the standardised innovations of machines without an event, which is 1 if drift, scatter and uncertainties are
-as stated: {checked or "not enough campaigns"}.</p>
+<p>False alarms: {alarms['machines']} of {alarms['of']} machines without an event ({percent(alarms['share'])} %; 95 %
+interval {percent(alarms['interval'][0])} to {percent(alarms['interval'][1])} %) in {alarms['years']:.1f} machine-years.
+Expected from the rule: {percent(alarms['expected_at_least'])} to {percent(alarms['expected'])} %. Machines with an event
+that had an alarm before it: {score['before_event']}.</p>
+<p>Mean square of the standardised innovations of machines without an event, which is 1 if drift, scatter and
+uncertainties are as stated: {checked or "not enough campaigns"}.</p>
 {events_table(score)}
 <h2>Detection delay, weeks</h2>
 {histogram(delays)}

@@ -20,7 +20,7 @@ def alarm_of(row: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def expected_share(settings: Settings) -> tuple[float, float]:
-    """Bounds of the probability of a false alarm over the weeks. Each chart's is exact. Both follow one machine, so they
+    """Bounds of the probability of a false alarm over the weeks. Each chart's is exact. Both follow one machine and so
     depend on each other: together it lies between the larger one and the sum."""
     each = [false_alarm(len(kind.followed), len(kind.days(settings.weeks)) - 1, settings.weight, settings.limit(kind))
             for kind in KINDS if len(kind.days(settings.weeks)) > 1]
@@ -39,7 +39,8 @@ def score_fleet(settings: Settings, rows: list[dict[str, Any]], truth: list[dict
         event = known[row["machine"]]
         if event["event"] is None:
             continue
-        one = events.setdefault(event["event"], {"machines": 0, "detected": 0, "undetected": 0, "before": 0, "delays_days": []})
+        one = events.setdefault(event["event"], {"machines": 0, "detected": 0, "undetected": 0, "before": 0,
+                                                 "delays_days": []})
         one["machines"] += 1
         alarm = alarm_of(row)
         if alarm is None:
@@ -53,7 +54,7 @@ def score_fleet(settings: Settings, rows: list[dict[str, Any]], truth: list[dict
     for one in events.values():
         one["delays_days"].sort()
         one["median_days"] = median(one["delays_days"]) if one["delays_days"] else None
-    squares = {kind.name: (sum(row[kind.name]["square_sum"] for row in quiet), sum(row[kind.name]["squares"] for row in quiet))
+    squares = {kind.name: tuple(sum(row[kind.name][key] for row in quiet) for key in ("square_sum", "squares"))
                for kind in KINDS}
     return {
         "alarms": sum(alarm_of(row) is not None for row in rows), "before_event": before_event,
@@ -62,6 +63,7 @@ def score_fleet(settings: Settings, rows: list[dict[str, Any]], truth: list[dict
                          "years": len(quiet) * settings.weeks / 52},
         "by_kind": {kind.name: {"machines": sum(row[kind.name]["alarm"] is not None for row in quiet),
                                 "limit": settings.limit(kind), "followed": len(kind.followed)} for kind in KINDS},
-        "mean_square_of_innovations": {name: total / count if count else None for name, (total, count) in squares.items()},
+        "mean_square_of_innovations": {name: total / count if count else None
+                                       for name, (total, count) in squares.items()},
         "events": dict(sorted(events.items())),
     }

@@ -38,9 +38,9 @@ class Settings:
 
     def limit(self, kind: Kind) -> float:
         """So that the kinds together spend the probability of false alarms of these weeks."""
-        innovations_count = len(kind.days(self.weeks)) - 1
+        count = len(kind.days(self.weeks)) - 1
         share = self.false_alarms * self.weeks / 52 / len(KINDS)
-        return limit_for(len(kind.followed), innovations_count, self.weight, share) if innovations_count > 0 else math.inf
+        return limit_for(len(kind.followed), count, self.weight, share) if count > 0 else 0.0
 
 
 def write_atomically(path: Path, text: str) -> None:
@@ -82,7 +82,8 @@ def judge(settings: Settings, kind: Kind, history: abbe.History) -> dict[str, An
     z = innovations(values, covariances, drift_covariance(kind), days)
     lengths, limit = averages(z, settings.weight), settings.limit(kind)
     found: dict[str, Any] = {
-        "campaigns": len(campaigns), "days": sorted(set(days.tolist())), "lengths": [round(x, 6) for x in lengths.tolist()],
+        "campaigns": len(campaigns), "days": sorted(set(days.tolist())),
+        "lengths": [round(x, 6) for x in lengths.tolist()],
         "limit": round(limit, 6), "square_sum": round(float((z * z).sum()), 6), "squares": int(z.size), "alarm": None}
     alarm = first_alarm(lengths, limit, len(kind.followed))
     if alarm:
@@ -91,7 +92,8 @@ def judge(settings: Settings, kind: Kind, history: abbe.History) -> dict[str, An
                     key=lambda error: abs(error.change_mm_rad) / error.expanded_uncertainty_mm_rad)
         to_um = 1e6 if worst.is_angle else 1e3
         found["alarm"] = {
-            "day": int(days[alarm.campaign]), "since": int(days[alarm.before]), "error": worst.name, "words": worst.words,
+            "day": int(days[alarm.campaign]), "since": int(days[alarm.before]),
+            "error": worst.name, "words": worst.words,
             "unit": "urad" if worst.is_angle else "um", "change": round(worst.change_mm_rad * to_um, 4),
             "expanded_uncertainty": round(worst.expanded_uncertainty_mm_rad * to_um, 4),
             "at_tool_um": round(worst.at_tool_mm * 1e3, 4)}
@@ -130,8 +132,8 @@ def gather(folder: Path, settings: Settings) -> list[dict[str, Any]]:
     """The rows of all machines, each once, or an exit that names what is missing or twice."""
     missing = [shard for shard in settings.shards() if not shard_path(folder, shard).exists()]
     if missing:
-        raise SystemExit(f"fleet: {len(missing)} of {len(settings.shards())} shards are not done, the first is {missing[0]}; "
-                         "run the same command again")
+        raise SystemExit(f"fleet: {len(missing)} of {len(settings.shards())} shards are not done, the first is "
+                         f"{missing[0]}; run the same command again")
     rows = [row for shard in settings.shards() for row in json.loads(shard_path(folder, shard).read_text())]
     if [row["machine"] for row in rows] != list(range(1, settings.machines + 1)):
         raise SystemExit("fleet: the shards do not hold every machine exactly once")
@@ -139,6 +141,6 @@ def gather(folder: Path, settings: Settings) -> list[dict[str, Any]]:
         for kind in KINDS:
             expected = kind.days(settings.weeks)
             if row[kind.name]["days"] != expected or row[kind.name]["campaigns"] != len(expected):
-                raise SystemExit(f"fleet: machine {row['machine']}: {row[kind.name]['campaigns']} {kind.name} campaigns, "
-                                 f"expected {len(expected)}, one on each day that is due")
+                raise SystemExit(f"fleet: machine {row['machine']}: {row[kind.name]['campaigns']} campaigns with the "
+                                 f"{kind.name}, expected {len(expected)}, one on each day that is due")
     return rows

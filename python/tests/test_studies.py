@@ -137,6 +137,15 @@ def test_too_few_readings_give_no_errors(mill):
         result.errors
 
 
+def test_advice_can_be_left_out(mill):
+    study = abbe.Study(mill, DOCUMENT)
+    advised, plain = study.run(map=False), study.run(map=False, advice=False)
+    assert plain.errors.text() == advised.errors.text()
+    assert numpy.array_equal(plain.covariance, advised.covariance)
+    assert plain.to_dict()["not_identified"]["errors"] == advised.to_dict()["not_identified"]["errors"]
+    assert advised.to_dict()["not_identified"]["shown_by"] and not plain.to_dict()["not_identified"]["shown_by"]
+
+
 def test_progress_and_stopping(mill, examples):
     study = abbe.Study.read(examples / "aguado/aguado.study.toml")
     seen = []
