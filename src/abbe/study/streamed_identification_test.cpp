@@ -176,21 +176,6 @@ TEST_F(StreamedReadings, GoOnFromTheSumsOfARunThatWasStopped) {
   EXPECT_FALSE(std::filesystem::exists(journal()));
 }
 
-TEST_F(StreamedReadings, TakeNoSumsOfAnotherModel) {
-  std::stop_source stop;
-  const auto stop_later = [&](StudyStep step, std::size_t done, std::size_t total) {
-    if (step == StudyStep::identify && done == total && total > 1) stop.request_stop();
-  };
-  EXPECT_THROW(run(1000, {.map = false, .progress = stop_later, .stop = stop.get_token()}), Stopped);
-  ASSERT_TRUE(std::filesystem::exists(journal()));
-  for (IdentifiedMotion& motion : study_.identification->motions) {
-    if (motion.basis.kind == BasisKind::legendre) motion.basis.kind = BasisKind::chebyshev;
-  }
-  const StudyResult resumed = run(1000);
-  const StudyResult fresh = run(1000);
-  expect_same(fresh.identification, resumed.identification);
-}
-
 TEST_F(StreamedReadings, AreRefusedWhereAllAreNeededInMemory) {
   study_.identification->held_out_fraction = 0.1;
   EXPECT_THAT(refusal(), HasSubstr("identify.held_out_fraction: holding out readings needs all readings in memory"));
