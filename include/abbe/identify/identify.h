@@ -65,7 +65,7 @@ struct IdentifyOptions {
   double outlier_norm_quantile = 1e-4;  ///< a reading is listed as outlier beyond this exceedance of its chi-square
   /// False: no outliers are listed, and no memory is taken per reading; for least squares only.
   bool list_outliers = true;
-  bool apply_variance_factor = false;   ///< multiply the covariance with chi-square / degrees of freedom; always stated
+  bool apply_variance_factor = false;  ///< multiply the covariance with chi-square / degrees of freedom; always stated
 };
 
 struct Outlier {

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
-#include "abbe/formats/files/sum_journal.h"
 #include "abbe/formats/readings/streamed_observations.h"
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/cross_products.h"
+#include "abbe/geometry/digest.h"
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/stopped.h"
 #include "abbe/identify/distributions.h"
@@ -43,78 +45,76 @@ void require_streamable(const Study& study, const Setup& setup) {
             "columns of the states in the files of readings");
 }
 
-std::uint64_t key_of(std::span<const std::byte> request, PieceRange range, std::uint64_t readings) {
-  std::uint64_t key = readings;
-  const auto mix = [&key](std::uint64_t word) {
-    key = (key ^ word) * 0x9fb21c651e98df25U;
-    key ^= key >> 29;
-  };
-  for (const std::byte byte : request) mix(static_cast<std::uint64_t>(byte));
-  mix(range.first);
-  mix(range.last);
-  return key;
-}
-
-/// Sums of the readings on disk, a few pieces at a time, each kept in the journal.
-class JournalledSums {
+/// Sums of the readings on disk as numbered work, so that finished ones can be kept in a file and shared by processes.
+class StreamedSums {
  public:
-  JournalledSums(Problem problem, SumJournal& journal, std::uint64_t readings, int threads, ProgressCallback progress)
+  StreamedSums(Problem problem, std::uint64_t readings, int threads, const IdentificationJob& job)
       : summer_(std::move(problem)),
-        journal_(journal),
         readings_(readings),
         threads_(threads),
-        progress_(std::move(progress)) {}
+        driver_(job.work),
+        progress_(job.progress) {}
 
   SumOfReadings operator()(const SumRequest& request, const std::stop_token& stop) {
-    if (!model_known_) take_model(request);
-    const std::vector<std::byte> asked = to_bytes(request);
-    const std::size_t together =
-        static_cast<std::size_t>(std::max(1, threads_ > 0 ? threads_ : default_thread_count()));
-    std::vector<SumOfReadings> parts;
-    for (std::size_t first = 0; first < request.pieces; first += together) {
+    std::vector<SumOfReadings> parts((request.pieces + kPiecesOfBlock - 1) / kPiecesOfBlock);
+    std::size_t done = 0;
+    NumberedWork work{.name = "sums over the readings", .blocks = parts.size(), .threads = threads_};
+    work.in_parallel = false;
+    work.for_all = true;
+    work.fingerprint = [&] { return fingerprint(request); };
+    work.compute = [&](std::size_t block) {
       stop_if_asked(stop);
-      const PieceRange range{first, std::min(first + together, request.pieces)};
-      const std::uint64_t key = key_of(asked, range, readings_);
-      if (std::optional<SumOfReadings> earlier = kept(key, range)) {
-        parts.push_back(std::move(*earlier));
-      } else {
-        parts.push_back(summer_.sum(request, range, {threads_, stop, {}}));
-        journal_.add(key, to_bytes(parts.back()));
+      parts[block] = summer_.sum(request, range_of(block, request), {threads_, stop, {}});
+    };
+    work.pack = [&](std::size_t block, std::vector<std::byte>& bytes) {
+      const std::vector<std::byte> sum = to_bytes(parts[block]);
+      bytes.insert(bytes.end(), sum.begin(), sum.end());
+    };
+    work.unpack = [&](std::size_t block, std::span<const std::byte> bytes) {
+      try {
+        parts[block] = sum_from_bytes(bytes);
+      } catch (const SumError& error) {
+        throw WorkError(error.what());
       }
-      // Nobody knows how many sums the solver will ask for; this is how far the present one has come.
-      if (progress_) progress_(range.last, request.pieces);
-    }
+      if (!(parts[block].range == range_of(block, request))) throw WorkError("a sum is of other pieces");
+    };
+    // Nobody knows how many sums the solver will ask for; this is how far the present one has come.
+    work.finished = [&](std::size_t) {
+      if (progress_) progress_(++done, parts.size());
+    };
+    do_work(driver_, work);
     return merge_all(std::move(parts));
   }
 
  private:
-  /// The fingerprint of the first piece tells other models apart, whose sums must not be taken.
-  void take_model(const SumRequest& request) {
-    SumRequest cost = request;
-    cost.kind = SumKind::cost;
-    cost.covariance.clear();
-    const SumOfReadings first = summer_.sum(cost, {0, 1}, {threads_, {}, {}});
-    readings_ ^= first.readings.front();
-    model_known_ = true;
+  static constexpr std::size_t kPiecesOfBlock = 8;
+
+  static PieceRange range_of(std::size_t block, const SumRequest& request) {
+    return {block * kPiecesOfBlock, std::min((block + 1) * kPiecesOfBlock, request.pieces)};
   }
 
-  std::optional<SumOfReadings> kept(std::uint64_t key, PieceRange range) const {
-    const std::optional<std::vector<std::byte>> bytes = journal_.find(key);
-    if (!bytes) return std::nullopt;
-    try {
-      SumOfReadings sum = sum_from_bytes(*bytes);
-      if (sum.range == range && sum.processor == vector_instructions()) return sum;
-    } catch (const SumError&) {  // damaged on disk: made again
+  /// Of the request, all readings, and the model: residuals and derivatives of the first piece.
+  std::uint64_t fingerprint(const SumRequest& request) {
+    if (!model_) {
+      SumRequest cost = request;
+      cost.kind = SumKind::cost;
+      cost.covariance.clear();
+      model_ = summer_.sum(cost, {0, 1}, {threads_, {}, {}}).readings.front();
     }
-    return std::nullopt;
+    Digest digest;
+    digest.add_text(vector_instructions());
+    digest.add_bytes(to_bytes(request));
+    digest.add(readings_);
+    digest.add(*model_);
+    return digest.value();
   }
 
   PieceSummer summer_;
-  SumJournal& journal_;
   std::uint64_t readings_;
   int threads_;
+  WorkDriver driver_;
   ProgressCallback progress_;
-  bool model_known_ = false;
+  std::optional<std::uint64_t> model_;
 };
 
 /// What is said of all readings after the fit, without keeping anything of each.
@@ -236,12 +236,8 @@ bool is_streamed(const Campaign& campaign) {
                      [](const CampaignSetup& setup) { return setup.shards != nullptr; });
 }
 
-void identify_streamed(const Study& study, const IdentifyOptions& given, const ProgressCallback& progress,
+void identify_streamed(const Study& study, const IdentifyOptions& given, const IdentificationJob& job,
                        StudyResult& result) {
-  if (given.solver.summation) {
-    throw InputError({.field = "identify.readings_in_memory"},
-                     "readings that do not fit into memory are summed by one process", "abbe run without mpirun");
-  }
   Problem& kept = result.model.problem;
   Problem streamed = kept, elsewhere = kept;
   std::uint64_t readings = 0;
@@ -254,14 +250,7 @@ void identify_streamed(const Study& study, const IdentifyOptions& given, const P
           std::make_shared<StreamedObservations>(kept.machine, kept.errors, setup.start, setup.shards);
     }
   }
-  std::filesystem::path file = study.output;
-  file += ".sums";
-  SumJournal journal(file);
-  if (journal.size() > 0) {
-    result.warnings.push_back(
-        fmt::format("goes on from {} sums that an earlier run left in {}", journal.size(), file.string()));
-  }
-  auto sums = std::make_shared<JournalledSums>(std::move(elsewhere), journal, readings, study.threads, progress);
+  auto sums = std::make_shared<StreamedSums>(std::move(elsewhere), readings, study.threads, job);
   IdentifyOptions options = given;
   options.list_outliers = false;
   options.solver.summation = [sums](const SumRequest& request, const std::stop_token& stop) {
@@ -273,7 +262,6 @@ void identify_streamed(const Study& study, const IdentifyOptions& given, const P
     list_kept_outliers(kept, options.outlier_norm_quantile, result.identification);
     tell_streamed(streamed, options.outlier_norm_quantile, study.threads, result);
   }
-  journal.remove();
 }
 
 }  // namespace abbe

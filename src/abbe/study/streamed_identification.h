@@ -7,7 +7,7 @@
 #include "abbe/formats/readings/reading_shards.h"
 #include "abbe/identify/identify.h"
 #include "abbe/study/campaign.h"
-#include "abbe/study/study_result.h"
+#include "abbe/study/study_steps.h"
 
 namespace abbe {
 
@@ -29,10 +29,9 @@ bool is_streamed(const Campaign& campaign);
 /// Identifies from all readings of a campaign with shards. The problem of the result keeps the readings that are in
 /// memory, at the estimates; outliers are listed among these, and counted among all.
 ///
-/// Sums that were made are kept in a file beside the results folder, from which a run that was killed goes on; it is
-/// removed at the end.
+/// Every sum is numbered work (IdentificationJob::work), which can be kept in a file and shared by processes.
 /// @throws InputError if a file of readings has changed meanwhile; Stopped
-void identify_streamed(const Study& study, const IdentifyOptions& options, const ProgressCallback& progress,
+void identify_streamed(const Study& study, const IdentifyOptions& options, const IdentificationJob& job,
                        StudyResult& result);
 
 }  // namespace abbe

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "abbe/formats/files/work_checkpoint.h"
 #include "abbe/formats/readings/reading_shards.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/study/example_file_for_test.h"
@@ -19,7 +21,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A ball bar on a trunnion mill, its readings in files: 40 times those of the example, with a line of its own each.
+/// A ball bar on a trunnion mill, its readings in files: 16 times those of the example, with a line of its own each.
 class StreamedReadings : public testing::Test {
  protected:
   StreamedReadings() {
@@ -35,7 +37,7 @@ class StreamedReadings : public testing::Test {
     study_.simulation.reset();
     study_.identification->held_out_fraction = 0;
     study_.output = folder_ / "results";
-    give({{"a.csv", repeated(17)}, {"b.csv", "# the second day\n" + repeated(23)}});
+    give({{"a.csv", repeated(7)}, {"b.csv", "# the second day\n" + repeated(9)}});
   }
   ~StreamedReadings() override { std::filesystem::remove_all(folder_); }
 
@@ -64,7 +66,25 @@ class StreamedReadings : public testing::Test {
     }
     return "";
   }
-  std::filesystem::path journal() const { return folder_ / "results.sums"; }
+  std::filesystem::path unfinished() const { return folder_ / "results.unfinished"; }
+  /// Keeps every block from the beginning.
+  static CheckpointOptions at_once(std::function<void(const std::string&)> tell = {}) {
+    return {.after_s = 0, .remaining_s = 0, .tell = std::move(tell)};
+  }
+  /// A run that keeps its sums and is stopped in the middle of the identification.
+  void stop_after_sums(int blocks) {
+    std::stop_source stop;
+    int steps = 0;
+    const auto stop_later = [&](StudyStep step, std::size_t, std::size_t) {
+      if (step == StudyStep::identify && ++steps == blocks) stop.request_stop();
+    };
+    WorkCheckpoint checkpoint(folder_ / "results", at_once());
+    EXPECT_THROW(run(1000, {.map = false,
+                            .progress = stop_later,
+                            .stop = stop.get_token(),
+                            .work = [&](const NumberedWork& work) { checkpoint.work(work, {}); }}),
+                 Stopped);
+  }
 
   std::filesystem::path folder_;
   Study study_;
@@ -89,12 +109,11 @@ TEST_F(StreamedReadings, GiveTheBytesOfThoseInMemory) {
   EXPECT_LT(streamed.campaign.reading_count(), 1300U);
   expect_same(in_memory.identification, small_enough.identification);
   expect_same(in_memory.identification, streamed.identification);
-  EXPECT_FALSE(std::filesystem::exists(journal()));
   EXPECT_THAT(streamed.warnings, testing::Contains(HasSubstr("are read again for every sum")));
 }
 
 TEST_F(StreamedReadings, CountTheOutliersOfAllReadings) {
-  const std::string middle = repeated(17);
+  const std::string middle = repeated(7);
   const std::size_t row = middle.find('\n', middle.size() / 2) + 1;
   std::string wrong = middle;
   std::size_t length = row;  // behind five axes and the item
@@ -110,7 +129,7 @@ TEST_F(StreamedReadings, CountTheOutliersOfAllReadings) {
 }
 
 TEST_F(StreamedReadings, AreRefusedIfAFileWasCutOff) {
-  std::string text = repeated(20);
+  std::string text = repeated(9);
   text.resize(text.size() - 3);
   write("b.csv", text);
   EXPECT_THAT(refusal(), HasSubstr("b.csv:"));
@@ -118,14 +137,14 @@ TEST_F(StreamedReadings, AreRefusedIfAFileWasCutOff) {
 }
 
 TEST_F(StreamedReadings, AreRefusedIfAFileIsGivenTwice) {
-  write("b.csv", repeated(17));
+  write("b.csv", repeated(7));
   EXPECT_THAT(refusal(), HasSubstr("b.csv: has the same content as"));
   study_.setups[0].data[1].file = folder_ / "." / "a.csv";
   EXPECT_THAT(refusal(), HasSubstr("is given twice"));
 }
 
 TEST_F(StreamedReadings, NameTheLineOfABadField) {
-  std::string text = repeated(20);
+  std::string text = repeated(9);
   const std::size_t row = text.find('\n', text.size() * 9 / 10) + 1;
   const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(row), '\n') + 1;
   text.insert(row, "x");
@@ -135,12 +154,12 @@ TEST_F(StreamedReadings, NameTheLineOfABadField) {
 
 TEST_F(StreamedReadings, AreRefusedIfAFileChangesDuringTheRun) {
   for (const bool shorter : {true, false}) {
-    give({{"a.csv", repeated(40)}});
+    give({{"a.csv", repeated(16)}});
     bool changed = false;
     const auto change = [&](StudyStep step, std::size_t done, std::size_t) {
       if (step != StudyStep::identify || done == 0 || changed) return;
       changed = true;
-      std::string text = repeated(40);
+      std::string text = repeated(16);
       if (shorter) {
         std::filesystem::resize_file(folder_ / "a.csv", text.size() / 2);
       } else {
@@ -155,25 +174,44 @@ TEST_F(StreamedReadings, AreRefusedIfAFileChangesDuringTheRun) {
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(shorter ? "has become shorter" : "has changed since"));
     }
-    std::filesystem::remove(journal());
   }
 }
 
 TEST_F(StreamedReadings, GoOnFromTheSumsOfARunThatWasStopped) {
   const StudyResult whole = run(1000);
-  std::stop_source stop;
-  int steps = 0;
-  const auto stop_later = [&](StudyStep step, std::size_t, std::size_t) {
-    if (step == StudyStep::identify && ++steps == 60) stop.request_stop();
-  };
-  EXPECT_THROW(run(1000, {.map = false, .progress = stop_later, .stop = stop.get_token()}), Stopped);
-  ASSERT_TRUE(std::filesystem::exists(journal()));
+  stop_after_sums(60);
+  ASSERT_TRUE(std::filesystem::exists(unfinished()));
   // Killed while it wrote a record.
-  std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);
-  const StudyResult resumed = run(1000);
-  EXPECT_THAT(resumed.warnings, testing::Contains(HasSubstr("goes on from")));
-  expect_same(whole.identification, resumed.identification);
-  EXPECT_FALSE(std::filesystem::exists(journal()));
+  std::filesystem::resize_file(unfinished(), std::filesystem::file_size(unfinished()) - 5);
+  std::string told;
+  {
+    WorkCheckpoint checkpoint(folder_ / "results", at_once([&](const std::string& sentence) { told += sentence; }));
+    const StudyResult resumed =
+        run(1000, {.map = false, .work = [&](const NumberedWork& work) { checkpoint.work(work, {}); }});
+    expect_same(whole.identification, resumed.identification);
+    checkpoint.remove();
+  }
+  EXPECT_THAT(told, HasSubstr("of the sums over the readings are taken from"));
+  EXPECT_FALSE(std::filesystem::exists(unfinished()));
+}
+
+TEST_F(StreamedReadings, TakeNoSumsOfAnotherModelOrOfOtherReadings) {
+  stop_after_sums(60);
+  study_.identification->locations.pop_back();
+  const auto expect_fresh = [&] {
+    const StudyResult fresh = run(1000);
+    std::string told;
+    WorkCheckpoint checkpoint(folder_ / "results", at_once([&](const std::string& sentence) { told += sentence; }));
+    const StudyResult result =
+        run(1000, {.map = false, .work = [&](const NumberedWork& work) { checkpoint.work(work, {}); }});
+    expect_same(fresh.identification, result.identification);
+    EXPECT_THAT(told, testing::Not(HasSubstr("taken from")));
+    EXPECT_THAT(told, HasSubstr("is of other inputs"));
+  };
+  expect_fresh();
+  stop_after_sums(60);
+  give({{"a.csv", repeated(8)}, {"b.csv", repeated(8)}});
+  expect_fresh();
 }
 
 TEST_F(StreamedReadings, AreRefusedWhereAllAreNeededInMemory) {

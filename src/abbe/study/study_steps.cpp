@@ -104,7 +104,7 @@ void identify_study(const Study& study, StudyResult& result, const Identificatio
                                           .by_block = plan.estimate_block_noise};
   result.walks = walks_to_estimate(result.campaign, problem);
   if (is_streamed(result.campaign)) {
-    identify_streamed(study, options, job.progress, result);
+    identify_streamed(study, options, job, result);
   } else if (!result.walks.empty()) {
     result.identification = identify_with_walks(problem, result.walks, options);
   } else if (variances.any()) {
