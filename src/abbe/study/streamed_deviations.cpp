@@ -1,10 +1,8 @@
 #include "abbe/study/streamed_deviations.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <memory>
@@ -13,7 +11,7 @@
 #include <utility>
 
 #include "abbe/formats/files/checkpoint.h"
-#include "abbe/formats/files/standard_input.h"
+#include "abbe/formats/files/file_stamp.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/shapes/point_cloud_blocks.h"
 #include "abbe/formats/text/input_error.h"
@@ -27,22 +25,6 @@
 
 namespace abbe {
 namespace {
-
-/// What shows that a file has changed.
-struct FileStamp {
-  std::uint64_t bytes = 0;
-  std::int64_t seconds = 0, nanoseconds = 0;
-
-  explicit FileStamp(const std::string& file) {
-    struct stat status {};
-    // Where it cannot be found any more it has changed.
-    if (::stat(path_to_open(file).c_str(), &status) != 0) return;
-    bytes = static_cast<std::uint64_t>(status.st_size);
-    seconds = status.st_mtim.tv_sec;
-    nanoseconds = status.st_mtim.tv_nsec;
-  }
-  bool operator==(const FileStamp&) const = default;
-};
 
 /// Number that differs where the surfaces differ.
 std::uint64_t mark_of_mesh(const TriangleMesh& mesh) {
@@ -91,7 +73,7 @@ class StreamJob {
       : request_(request),
         options_(options),
         job_(job),
-        stamp_(request.scan_file),
+        stamp_(file_stamp(request.scan_file)),
         file_(request.scan_file),
         blocks_(file_.text(), request.scan_file, scan),
         surface_(request.part.mesh, request.threads),
@@ -133,7 +115,7 @@ class StreamJob {
 
  private:
   void require_unchanged() const {
-    if (FileStamp(request_.scan_file) == stamp_) return;
+    if (file_stamp(request_.scan_file) == stamp_) return;
     throw InputError(
         {.file = request_.scan_file},
         fmt::format("was changed while it was read, at byte {}, behind point {}", at_, sums_.points() + not_finite_),
@@ -143,7 +125,7 @@ class StreamJob {
   void next_block() {
     require_unchanged();
     const std::size_t end = blocks_.block_end(at_, options_.block);
-    const PointBlock block = blocks_.read(at_, end, request_.threads);
+    const CloudBlock block = blocks_.read(at_, end, request_.threads);
     const RigidTransform& pose = request_.pose.transform;
     const Eigen::Matrix3Xd points = (pose.rotation * block.points).colwise() + pose.translation;
     if (points.cols() > 0) {

@@ -23,7 +23,7 @@ struct PointCloudKind {
 PointCloudKind point_cloud_kind(std::string_view contents, const std::string& file);
 
 /// Points as read from a part of a file.
-struct PointBlock {
+struct CloudBlock {
   Eigen::Matrix3Xd points;     ///< [3, n] mm, in the order of the file
   std::size_t not_finite = 0;  ///< left out (PCD): not all coordinates are finite numbers
 };
@@ -49,7 +49,7 @@ class PointCloudBlocks {
   std::size_t block_end(std::size_t from, std::size_t points) const;
   /// Points from one end of a block to another. @param threads  0: all; the result does not depend on it
   /// @throws InputError
-  PointBlock read(std::size_t from, std::size_t to, int threads = 0) const;
+  CloudBlock read(std::size_t from, std::size_t to, int threads = 0) const;
 
   /// Internal: one kind of file.
   class Reader;

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kFirstLine = "abbe unfinished 1\n";
+constexpr std::string_view kCheckpointLine = "abbe unfinished 1\n";
 
 bool still_has_name(const Descriptor& file, const fs::path& path) {
   struct stat open_file {
@@ -97,7 +97,7 @@ void Checkpoint::open_and_lock() {
 }
 
 std::string Checkpoint::header() const {
-  std::string text(kFirstLine);
+  std::string text(kCheckpointLine);
   for (const auto& [name, value] : facts_) text += name + ": " + value + '\n';
   return text + '\n';
 }
@@ -113,7 +113,7 @@ void Checkpoint::read_state() {
   constexpr std::size_t kChecksum = 4;
   const std::size_t body = contents.size() < kChecksum ? 0 : contents.size() - kChecksum;
   const std::size_t header_end = contents.find("\n\n");
-  if (!contents.starts_with(kFirstLine) || header_end == std::string::npos || header_end + 2 > body ||
+  if (!contents.starts_with(kCheckpointLine) || header_end == std::string::npos || header_end + 2 > body ||
       checksum_bytes(std::string_view(contents).substr(0, body)) != contents.substr(body)) {
     refuse("is no checkpoint of this program, or is damaged");
   }

@@ -98,7 +98,7 @@ std::size_t PointCloudBlocks::end() const { return reader_->end; }
 std::size_t PointCloudBlocks::block_end(std::size_t from, std::size_t points) const {
   return reader_->block_end(from, points);
 }
-PointBlock PointCloudBlocks::read(std::size_t from, std::size_t to, int threads) const {
+CloudBlock PointCloudBlocks::read(std::size_t from, std::size_t to, int threads) const {
   return reader_->read(from, to, threads);
 }
 

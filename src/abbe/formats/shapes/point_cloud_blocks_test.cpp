@@ -19,7 +19,7 @@ Eigen::Matrix3Xd all_points(const std::string& contents, const std::string& name
   for (std::size_t at = blocks.begin(); at < blocks.end();) {
     const std::size_t end = blocks.block_end(at, block);
     EXPECT_GT(end, at);
-    const PointBlock found = blocks.read(at, end);
+    const CloudBlock found = blocks.read(at, end);
     all.conservativeResize(3, all.cols() + found.points.cols());
     all.rightCols(found.points.cols()) = found.points;
     at = end;

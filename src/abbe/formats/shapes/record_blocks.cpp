@@ -64,9 +64,9 @@ class RecordReader : public PointCloudBlocks::Reader {
     return from + std::min((end - from) / stride, points) * stride;
   }
 
-  PointBlock read(std::size_t from, std::size_t to, int threads) const override {
+  CloudBlock read(std::size_t from, std::size_t to, int threads) const override {
     const std::size_t count = (to - from) / stride, blocks = (count + kRecordsTogether - 1) / kRecordsTogether;
-    PointBlock result;
+    CloudBlock result;
     result.points.resize(3, static_cast<Index>(count));
     std::vector<std::size_t> kept(blocks);
     for_each_block(blocks, threads, [&](std::size_t block) {

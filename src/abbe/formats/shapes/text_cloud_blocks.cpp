@@ -29,7 +29,7 @@ class TextReader : public PointCloudBlocks::Reader {
     return line_end == std::string_view::npos ? end : line_end + 1;
   }
 
-  PointBlock read(std::size_t from, std::size_t to, int threads) const override {
+  CloudBlock read(std::size_t from, std::size_t to, int threads) const override {
     std::vector<TextBlock> pieces = split_into_blocks<TextBlock>(text_.substr(0, to), from);
     std::vector<Eigen::Matrix3Xd> points(pieces.size());
     for_each_block(pieces.size(), threads,
@@ -39,7 +39,7 @@ class TextReader : public PointCloudBlocks::Reader {
       if (pieces[i].refusal) throw_refusal(text_, file_, *pieces[i].refusal);
       count += points[i].cols();
     }
-    PointBlock result;
+    CloudBlock result;
     result.points.resize(3, count);
     Index at = 0;
     for (const Eigen::Matrix3Xd& piece : points) {
