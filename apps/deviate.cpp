@@ -1,12 +1,12 @@
-#include <memory>
-#include <string>
-
-#include "abbe/study/scan_deviations.h"
+#include "abbe/formats/files/checkpoint.h"
+#include "abbe/study/streamed_deviations.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
+#include "progress.h"
 #include "scan/scan_files.h"
 
 namespace abbe {
@@ -15,35 +15,33 @@ namespace {
 struct DeviateCommand {
   ScanFiles files;
   EvaluationOptions options;
-  std::string transform;
-  double largest_mm = 0, lower_mm = 0, upper_mm = 0, colour_mm = 0, crease = 0;
+  ScanDeviationsRequest request;
+  StreamingOptions streaming;
+  double lower_mm = 0, upper_mm = 0;
   bool faces_of_file = false;
 };
 
 int run_deviate(const DeviateCommand& command) {
-  ScanDeviationsRequest request;
-  request.transform_file = command.transform;
-  if (!command.transform.empty()) request.pose = read_transform_file(command.transform);
-  if (command.lower_mm != 0 || command.upper_mm != 0) {
-    request.tolerance = DeviationTolerance{command.lower_mm, command.upper_mm};
-  }
+  ScanDeviationsRequest request = command.request;
+  if (!request.transform_file.empty()) request.pose = read_transform_file(request.transform_file);
+  if (command.lower_mm != 0 || command.upper_mm != 0) request.tolerance = {command.lower_mm, command.upper_mm};
   request.scan_file = command.files.scan;
   request.part_file = command.files.part;
-  request.scan = command.files.read_scan();
   request.part = command.files.read_part();
-  request.largest_mm = command.largest_mm;
-  request.colour_mm = command.colour_mm;
   request.faces = command.faces_of_file ? DeviationFaces::of_file
-                  : command.crease > 0  ? DeviationFaces::by_edges
+                  : request.crease > 0  ? DeviationFaces::by_edges
                                         : DeviationFaces::none;
-  request.crease = command.crease;
   request.threads = command.files.threads;
   request.tolerances = command.options.tolerances;
   request.page = !command.options.output.empty();
-  const ScanDeviations result = find_deviations(request);
-  std::vector<std::pair<std::string, std::string>> files;
-  if (!command.options.output.empty()) files = deviation_files(result);
+  StreamingOptions streaming = command.streaming;
+  streaming.output = command.options.output;
+  streaming.tell = [](const std::string& text) { tell("abbe: {}\n", text); };
+  const ScanDeviations result = deviations_of_file(std::move(request), command.files.scan_options(), streaming,
+                                                   {.progress = Progress("comparing").callback()});
+  const auto files = streaming.output.empty() ? decltype(deviation_files(result))() : deviation_files(result);
   const int code = finish_evaluation(result.report, command.options, files);
+  if (result.unfinished) result.unfinished->remove();
   return result.has_points() && !result.elsewhere ? code : static_cast<int>(kNegative);
 }
 
@@ -58,19 +56,19 @@ void add_deviate_command(CommandLine& line) {
       "examples/scan/bracket-transform.csv --largest-mm 0.3 --faces-deg 30 --tolerance p95_um=60 -o "
       "results/deviation");
   add_scan_files(app, command->files);
-  app->add_input_file("--transform", command->transform,
+  app->add_input_file("--transform", command->request.transform_file,
                       "Pose of the scan on the part: transform.csv of abbe register (default: as it stands)");
-  add_number(app, "--largest-mm", Quantity::length, "mm", {0, 1e9}, command->largest_mm,
+  add_number(app, "--largest-mm", Quantity::length, "mm", {0, 1e9}, command->request.largest_mm,
              "Points farther away are left out (default 0: all count)");
   add_number(app, "--lower-um", Quantity::length, "um", {-1e9, 1e9}, command->lower_mm,
              "With --upper-um: a band; reports the share of points within it");
   add_number(app, "--upper-um", Quantity::length, "um", {-1e9, 1e9}, command->upper_mm, "Upper end of the band");
-  add_number(app, "--faces-deg", Quantity::angle, "deg", {0, 180}, command->crease,
+  add_number(app, "--faces-deg", Quantity::angle, "deg", {0, 180}, command->request.crease,
              "Add statistics by face, where faces end at edges sharper than this angle (default 0: none)");
   app->add_flag("--faces", command->faces_of_file,
                 "Add statistics by the faces of a STEP file, or by the objects, groups and materials of an OBJ file")
       ->excludes("--faces-deg");
-  add_number(app, "--colour-um", Quantity::length, "um", {0, 1e9}, command->colour_mm,
+  add_number(app, "--colour-um", Quantity::length, "um", {0, 1e9}, command->request.colour_mm,
              "Deviation shown in full colour (default: from the 98th percentile)");
   app->add_output_folder("-o,--output", command->options.output,
                          "Results folder to write: evaluation.json, deviation.csv, deviation.ply (coloured), plot.svg, "
@@ -79,6 +77,8 @@ void add_deviate_command(CommandLine& line) {
                   "Largest permitted amount of a figure, such as maximum_um=50; repeatable. Exit code 1 if "
                   "exceeded")
       ->allow_extra_args(false);
+  app->add_option("--stream-above", command->streaming.above,
+                  "Points above which a scan is read in blocks (docs/scale.md), 27 bytes of a text each");
   app->add_flag("--json", command->options.json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_deviate(*command); }; });
 }

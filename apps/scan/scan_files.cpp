@@ -5,13 +5,11 @@
 
 namespace abbe {
 
-PointCloudFile ScanFiles::read_scan() const {
-  PointCloudOptions options;
-  options.unit = file_length_named(scan_unit);
-  options.mapping = columns.mapping();
-  options.threads = threads;
-  return read_point_cloud(scan, options);
+PointCloudOptions ScanFiles::scan_options() const {
+  return {.unit = file_length_named(scan_unit), .mapping = columns.mapping(), .threads = threads};
 }
+
+PointCloudFile ScanFiles::read_scan() const { return read_point_cloud(scan, scan_options()); }
 
 MeshFile ScanFiles::read_part() const {
   step.require_step_among({part});

@@ -19,6 +19,7 @@ struct ScanFiles {
   int threads = 0;
   StepReading step;
 
+  PointCloudOptions scan_options() const;
   PointCloudFile read_scan() const;
   MeshFile read_part() const;
 };

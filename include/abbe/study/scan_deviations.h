@@ -27,6 +27,7 @@
 //
 // The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/registration.md.
 
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -41,6 +42,8 @@
 #include "abbe/verify/parts/surface_deviation.h"
 
 namespace abbe {
+
+class Checkpoint;
 
 /// By what the deviations of a part are stated, beside the part as a whole.
 enum class DeviationFaces {
@@ -71,12 +74,15 @@ struct ScanDeviationsRequest {
 
 /// Deviations of a scan from its part, with their report. They need nothing of the request that they answer.
 struct ScanDeviations {
-  ScanComparison compared;
+  ScanComparison compared;  ///< of a scan that was read in blocks: counted points are those that are shown
   EvaluationReport report;  ///< with the tolerances of the request
   double colour_mm = 0;     ///< of the full colour
   /// Half of the points that count lie farther from the part than a tenth of its diagonal: the scan is not where the
   /// part is, and its deviations say nothing about the part. A note of the report says so.
   bool elsewhere = false;
+
+  std::shared_ptr<Checkpoint>
+      unfinished{};  ///< of a scan that was read in blocks: to be removed with the results there
 
   /// Whether any point counts.
   bool has_points() const { return !compared.counted_mm.empty(); }

@@ -12,13 +12,15 @@
 #include "abbe/report/drawings/surface_picture.h"
 #include "abbe/report/evaluations/deviation_report.h"
 #include "abbe/report/words/evaluation_text.h"
+#include "abbe/study/deviation_steps.h"
 #include "abbe/study/scan_of_part.h"
 
 namespace abbe {
-namespace {
 
-/// Refuses a transform where the registration that wrote it found no pose.
-void check_scan_pose(const ScanDeviationsRequest& request) {
+void check_deviation_request(const ScanDeviationsRequest& request) {
+  if (request.tolerance && request.tolerance->lower_mm > request.tolerance->upper_mm) {
+    throw InputError({.field = "--lower-um"}, "lies above --upper-um", "a band from lower to upper");
+  }
   const std::string& status = request.pose.status;
   if (status.empty() || status == "ok" || status == "ambiguous" || status == "undetermined") return;
   throw InputError({.file = request.transform_file, .field = "status"},
@@ -42,36 +44,48 @@ SurfaceFaces faces_of_part(const ScanDeviationsRequest& request) {
   return stated_faces(request.part.mesh, request.part.face_of_triangle, request.part.faces);
 }
 
-/// Notes a scan that is not where its part is. A scan on its part has half of its points within a tenth of the part's
-/// diagonal even where the part is badly made or much of its surroundings was scanned too.
-void note_scan_elsewhere(const MeshFile& part, ScanDeviations& result) {
+void note_scan_elsewhere(const MeshFile& part, double middle_mm, ScanDeviations& result) {
   constexpr double kShareOfDiagonal = 0.1;
-  std::vector<double> distance = result.compared.counted_mm;
-  if (distance.empty()) return;
-  for (double& d : distance) d = std::abs(d);
-  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
-  std::nth_element(distance.begin(), middle, distance.end());
   Eigen::AlignedBox3d box;
   for (Eigen::Index i = 0; i < part.mesh.size(); ++i) {
     for (int corner = 0; corner < 3; ++corner) box.extend(part.mesh.corner(i, corner));
   }
   const double diagonal = box.diagonal().norm();
-  result.elsewhere = *middle > kShareOfDiagonal * diagonal;
+  result.elsewhere = middle_mm > kShareOfDiagonal * diagonal;
   if (!result.elsewhere) return;
   result.report.notes.insert(
       result.report.notes.begin(),
       fmt::format("The scan is not where the part is: half of its points are farther than {:.4g} mm away, and the part "
                   "measures {:.4g} mm from corner to corner. Register the scan first (abbe register).",
-                  *middle, diagonal));
+                  middle_mm, diagonal));
+}
+
+DeviationRequest asked_of_report(const ScanDeviationsRequest& request) {
+  DeviationRequest asked{.scan = request.scan_file,
+                         .part = request.part_file,
+                         .transform = request.transform_file,
+                         .status = request.pose.status,
+                         .tolerance = request.tolerance,
+                         .largest_mm = request.largest_mm,
+                         .colour_mm = request.colour_mm};
+  if (request.faces == DeviationFaces::of_file) asked.face_names = request.part.face_names;
+  return asked;
+}
+
+namespace {
+
+/// Half of the amounts are larger.
+double middle_amount(std::vector<double> distance) {
+  for (double& d : distance) d = std::abs(d);
+  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+  std::nth_element(distance.begin(), middle, distance.end());
+  return *middle;
 }
 
 }  // namespace
 
 ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::stop_token& stop) {
-  check_scan_pose(request);
-  if (request.tolerance && request.tolerance->lower_mm > request.tolerance->upper_mm) {
-    throw InputError({.field = "--lower-um"}, "lies above --upper-um", "a band from lower to upper");
-  }
+  check_deviation_request(request);
   check_scan_and_part(request.scan, request.scan_file, request.part, request.part_file);
   const MeshFile& part = request.part;
   const ClosestPointFinder surface(part.mesh, request.threads);
@@ -83,16 +97,9 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::
                                   .faces = faces_of_part(request),
                                   .threads = request.threads,
                                   .stop = stop});
-  DeviationRequest asked{.scan = request.scan_file,
-                         .part = request.part_file,
-                         .transform = request.transform_file,
-                         .status = request.pose.status,
-                         .tolerance = request.tolerance,
-                         .largest_mm = request.largest_mm,
-                         .colour_mm = request.colour_mm};
-  if (request.faces == DeviationFaces::of_file) asked.face_names = part.face_names;
+  const DeviationRequest asked = asked_of_report(request);
   result.report = deviation_report(asked, request.scan, part, result.compared);
-  note_scan_elsewhere(part, result);
+  if (result.has_points()) note_scan_elsewhere(part, middle_amount(result.compared.counted_mm), result);
   apply_tolerances(request.tolerances, result.report);
   result.colour_mm = deviation_colour_range(asked, result.compared);
   if (request.page) {

@@ -14,5 +14,7 @@ Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> deviation_colours(std::span<const
 /// A range that shows most of them: the 98th percentile of the amounts, rounded up to 1, 2 or 5 times a power of ten;
 /// 0.001 mm if there are none but zeros.
 double colour_range_mm(std::span<const double> deviation_mm);
+/// The same from that percentile, mm.
+double colour_range_of_amount(double most);
 
 }  // namespace abbe

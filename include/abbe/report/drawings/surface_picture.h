@@ -6,6 +6,7 @@
 
 #include "abbe/geometry/surface/closest_point.h"
 #include "abbe/report/drawings/surface_data.h"
+#include "abbe/verify/evaluations/fine_histogram.h"
 #include "abbe/verify/parts/surface_deviation.h"
 
 namespace abbe {
@@ -28,5 +29,9 @@ SurfacePicture part_picture(const TriangleMesh& part, double refined_mm, int thr
 /// @return {"surface", "histograms"}, or an empty object if no point counts
 nlohmann::json deviation_page(const TriangleMesh& part, std::span<const SurfacePoint> closest,
                               const SurfaceDeviation& deviation, double limit_mm, int threads);
+
+/// For a picture of a choice of the points: states the numbers and the distribution of all. @param page  if not empty
+void state_all_points(std::size_t measured, std::size_t counted, const FineHistogram& all, double limit_mm,
+                      nlohmann::json& page);
 
 }  // namespace abbe

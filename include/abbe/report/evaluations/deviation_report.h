@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,8 @@
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/report/evaluations/evaluation_report.h"
+#include "abbe/verify/evaluations/fine_histogram.h"
+#include "abbe/verify/parts/point_sample.h"
 #include "abbe/verify/parts/scan_comparison.h"
 
 namespace abbe {
@@ -28,5 +31,21 @@ double deviation_colour_range(const DeviationRequest& request, const ScanCompari
 /// Statistics of all points and by faces, their distribution, facts about both files and notes.
 EvaluationReport deviation_report(const DeviationRequest& request, const PointCloudFile& scan, const MeshFile& part,
                                   const ScanComparison& compared);
+
+/// A scan that was read in blocks; what it points to has to live while the report is made.
+struct StreamedScan {
+  const PointCloudFile* file = nullptr;  ///< without its points
+  std::size_t points = 0;                ///< of the scan
+  const FineHistogram* histogram = nullptr;
+  std::size_t shown = 0;                  ///< points in the picture and the files
+  const SampledPoint* least = nullptr;    ///< null: no point counts
+  const SampledPoint* largest = nullptr;  ///< likewise
+};
+
+/// The same of a scan that was read in blocks, with the bounds of what is not exact.
+/// @param compared  deviation: of all points; counted_mm: of those that are shown
+/// @param range_mm  of the full colour
+EvaluationReport deviation_report(const DeviationRequest& request, const StreamedScan& scan, const MeshFile& part,
+                                  const ScanComparison& compared, double range_mm);
 
 }  // namespace abbe

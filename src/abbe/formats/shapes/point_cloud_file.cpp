@@ -8,6 +8,7 @@
 #include "abbe/formats/files/file_extension.h"
 #include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/import/readable_table.h"
+#include "abbe/formats/shapes/cloud_columns.h"
 #include "abbe/formats/shapes/e57_file.h"
 #include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/obj_file.h"
@@ -22,18 +23,6 @@
 
 namespace abbe {
 namespace {
-
-std::vector<CsvColumn> cloud_columns(bool in_plane) {
-  std::vector<CsvColumn> wanted;
-  for (const char* name : {"x", "y"}) wanted.push_back({name, Quantity::length});
-  wanted.push_back({"z", Quantity::length, false, !in_plane});
-  for (const char* name : {"nx", "ny", "nz"}) wanted.push_back({name, Quantity::dimensionless, false, false});
-  wanted.push_back({"deviation", Quantity::length, false, false});
-  CsvColumn name{"point", Quantity::dimensionless, true, false};
-  name.is_label = true;
-  wanted.push_back(name);
-  return wanted;
-}
 
 PointCloudFile parse_plain_csv_cloud(std::string_view contents, const std::string& file,
                                      const PointCloudOptions& options) {
@@ -120,6 +109,18 @@ PointCloudFile parse_xyz_cloud(std::string_view contents, const std::string& fil
 }
 
 }  // namespace
+
+std::vector<CsvColumn> cloud_columns(bool in_plane) {
+  std::vector<CsvColumn> wanted;
+  for (const char* name : {"x", "y"}) wanted.push_back({name, Quantity::length});
+  wanted.push_back({"z", Quantity::length, false, !in_plane});
+  for (const char* name : {"nx", "ny", "nz"}) wanted.push_back({name, Quantity::dimensionless, false, false});
+  wanted.push_back({"deviation", Quantity::length, false, false});
+  CsvColumn name{"point", Quantity::dimensionless, true, false};
+  name.is_label = true;
+  wanted.push_back(name);
+  return wanted;
+}
 
 PointCloudFile parse_point_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
   const std::string extension = file_extension(without_gz(with_ending(file, contents)));

@@ -19,7 +19,7 @@
 namespace abbe {
 namespace {
 
-struct PointBlock : TextBlock {
+struct XyzBlock : TextBlock {
   std::size_t rows = 0;
   std::size_t first_row = 0;
 };
@@ -61,7 +61,7 @@ std::size_t count_rows(std::string_view text, const TextBlock& block) {
 
 class PointReader {
  public:
-  PointReader(std::string_view text, std::size_t columns, double largest, PointCloud& cloud, PointBlock& block)
+  PointReader(std::string_view text, std::size_t columns, double largest, PointCloud& cloud, XyzBlock& block)
       : text_(text), columns_(columns), largest_(largest), cloud_(cloud), block_(block) {}
 
   void read() {
@@ -127,13 +127,12 @@ class PointReader {
   std::size_t columns_;
   double largest_;
   PointCloud& cloud_;
-  PointBlock& block_;
+  XyzBlock& block_;
 };
 
 }  // namespace
 
-PointCloud parse_xyz(std::string_view contents, const std::string& file, double largest, int threads) {
-  if (contents.starts_with("\xEF\xBB\xBF")) contents.remove_prefix(3);
+std::size_t xyz_columns(std::string_view contents, const std::string& file, double largest) {
   std::size_t columns = 0;
   for (std::size_t at = 0; at < contents.size() && columns == 0;) {
     const std::string_view line = csv_next_line(contents, at);
@@ -155,11 +154,28 @@ PointCloud parse_xyz(std::string_view contents, const std::string& file, double 
          "3: x y z, or 6: x y z and a unit normal; other columns need a CSV file with a header"});
   }
   if (columns == 0) throw InputError({file, 0, 0, ""}, "there are no points in the file", "lines of three numbers");
+  return columns;
+}
 
-  std::vector<PointBlock> blocks = split_into_blocks<PointBlock>(contents, 0);
+std::optional<TextRefusal> read_xyz_lines(std::string_view contents, std::size_t begin, std::size_t end,
+                                          std::size_t columns, double largest, PointCloud& cloud) {
+  XyzBlock block;
+  block.begin = begin;
+  block.end = end;
+  block.rows = count_rows(contents, block);
+  cloud.points.resize(3, static_cast<Eigen::Index>(block.rows));
+  cloud.normals.resize(3, columns == 6 ? static_cast<Eigen::Index>(block.rows) : 0);
+  PointReader(contents, columns, largest, cloud, block).read();
+  return block.refusal;
+}
+
+PointCloud parse_xyz(std::string_view contents, const std::string& file, double largest, int threads) {
+  if (contents.starts_with("\xEF\xBB\xBF")) contents.remove_prefix(3);
+  const std::size_t columns = xyz_columns(contents, file, largest);
+  std::vector<XyzBlock> blocks = split_into_blocks<XyzBlock>(contents, 0);
   for_each_block(blocks.size(), threads, [&](std::size_t i) { blocks[i].rows = count_rows(contents, blocks[i]); });
   std::size_t rows = 0;
-  for (PointBlock& block : blocks) {
+  for (XyzBlock& block : blocks) {
     block.first_row = rows;
     rows += block.rows;
   }
@@ -168,7 +184,7 @@ PointCloud parse_xyz(std::string_view contents, const std::string& file, double 
   if (columns == 6) cloud.normals.resize(3, static_cast<Eigen::Index>(rows));
   for_each_block(blocks.size(), threads,
                  [&](std::size_t i) { PointReader(contents, columns, largest, cloud, blocks[i]).read(); });
-  for (const PointBlock& block : blocks) {
+  for (const XyzBlock& block : blocks) {
     if (block.refusal) throw_refusal(contents, file, *block.refusal);
   }
   return cloud;

@@ -27,7 +27,10 @@ double colour_range_mm(std::span<const double> deviation_mm) {
   std::vector<double> amounts;
   amounts.reserve(deviation_mm.size());
   for (const double value : deviation_mm) amounts.push_back(std::abs(value));
-  const double most = percentile(amounts, 0.98);
+  return colour_range_of_amount(percentile(amounts, 0.98));
+}
+
+double colour_range_of_amount(double most) {
   if (!(most > 1e-9)) return 0.001;
   const double power = std::pow(10, std::floor(std::log10(most)));
   for (const double step : {1.0, 2.0, 5.0}) {

@@ -16,6 +16,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double kCrease = 30 * kDegree;
+constexpr std::size_t kPageClasses = 40;
 
 SurfaceReadings counted_readings(std::span<const SurfacePoint> closest, const SurfaceDeviation& deviation) {
   SurfaceReadings readings;
@@ -66,11 +67,9 @@ SurfaceReadings chosen(const SurfaceReadings& all, const std::vector<std::size_t
   return readings;
 }
 
-nlohmann::json distribution(const std::vector<double>& deviation_mm, double limit_mm) {
-  constexpr std::size_t kClasses = 40;
-  const Histogram classes = histogram(deviation_mm, -limit_mm, limit_mm, kClasses);
+nlohmann::json distribution(const Histogram& classes) {
   nlohmann::json entry = {{"title", "Distribution of the deviations"}, {"quantity", "deviation"}, {"of", "points"}};
-  for (std::size_t i = 0; i <= kClasses; ++i) {
+  for (std::size_t i = 0; i <= kPageClasses; ++i) {
     entry["edges_um"].push_back(1e3 * (classes.from + classes.width * static_cast<double>(i)));
   }
   entry["counts"] = classes.counts;
@@ -111,7 +110,16 @@ nlohmann::json deviation_page(const TriangleMesh& part, std::span<const SurfaceP
   colours.counted = readings.deviation_mm.size();
   colours.limit_mm = limit_mm;
   return {{"surface", surface_data(picture, &colours)},
-          {"histograms", nlohmann::json::array({distribution(readings.deviation_mm, limit_mm)})}};
+          {"histograms",
+           nlohmann::json::array({distribution(histogram(readings.deviation_mm, -limit_mm, limit_mm, kPageClasses))})}};
+}
+
+void state_all_points(std::size_t measured, std::size_t counted, const FineHistogram& all, double limit_mm,
+                      nlohmann::json& page) {
+  if (page.empty()) return;
+  page["surface"]["points"]["measured"] = measured;
+  page["surface"]["points"]["counted"] = counted;
+  page["histograms"] = nlohmann::json::array({distribution(all.classes(-limit_mm, limit_mm, kPageClasses))});
 }
 
 }  // namespace abbe

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "abbe/report/drawings/deviation_colours.h"
 #include "abbe/report/drawings/svg_plot.h"
@@ -46,14 +48,12 @@ std::vector<EvaluationFigure> figures_of(const DeviationStatistics& all) {
 }
 
 /// Points of each class as a staircase; those beyond the last classes count in them.
-EvaluationPlot distribution(const std::vector<double>& counted, double range_mm, const std::string& title) {
-  constexpr std::size_t kClasses = 40;
-  const Histogram classes = histogram(counted, -range_mm, range_mm, kClasses);
+EvaluationPlot distribution(const Histogram& classes, std::size_t counted, const std::string& title) {
   XyPlot plot(title, "deviation in \xC2\xB5m", "share of the points in %");
   std::vector<PlotPoint> stairs;
-  for (std::size_t i = 0; i < kClasses; ++i) {
+  for (std::size_t i = 0; i < classes.counts.size(); ++i) {
     const double from = classes.from + classes.width * static_cast<double>(i);
-    const double share = 100 * static_cast<double>(classes.counts[i]) / static_cast<double>(counted.size());
+    const double share = 100 * static_cast<double>(classes.counts[i]) / static_cast<double>(counted);
     stairs.push_back({1e3 * from, share});
     stairs.push_back({1e3 * (from + classes.width), share});
   }
@@ -129,22 +129,17 @@ void add_notes(const DeviationRequest& request, const MeshFile& part, Evaluation
   for (const std::string& note : part.notes) report.notes.push_back(request.part + ": " + note);
 }
 
-}  // namespace
-
-double deviation_colour_range(const DeviationRequest& request, const ScanComparison& compared) {
-  return request.colour_mm > 0 ? request.colour_mm : colour_range_mm(compared.counted_mm);
-}
-
-EvaluationReport deviation_report(const DeviationRequest& request, const PointCloudFile& scan, const MeshFile& part,
-                                  const ScanComparison& compared) {
-  const SurfaceDeviation& deviation = compared.deviation;
-  const double range = deviation_colour_range(request, compared);
+/// All but the distribution and the notes.
+/// @param points  of the scan
+EvaluationReport report_of_figures(const DeviationRequest& request, std::size_t points,
+                                   std::vector<std::pair<std::string, std::string>> facts,
+                                   const SurfaceDeviation& deviation, const SurfaceFaces& faces, double range) {
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   EvaluationReport report;
   report.kind = "deviation";
   report.title = fmt::format("Deviation of {} from {}", name(request.scan), name(request.part));
   report.standard = "signed distance to the closest point of the part, positive outside of the material";
-  report.facts = facts_of(scan, part);
+  report.facts = std::move(facts);
   report.facts.emplace_back("points that count", fmt::format("{}", deviation.all.sample.count));
   report.facts.emplace_back("left out", fmt::format("{} beyond the border of the surface, {} too far away",
                                                     deviation.beyond_border, deviation.too_far));
@@ -154,20 +149,86 @@ EvaluationReport deviation_report(const DeviationRequest& request, const PointCl
                               fmt::format("{:.3f} % of the points", 100 * deviation.all.within));
     report.details["share_within"] = deviation.all.within;
   }
-  report.details["points"] = scan.cloud.size();
+  report.details["points"] = points;
   report.details["points_counted"] = deviation.all.sample.count;
   report.details["beyond_border"] = deviation.beyond_border;
   report.details["too_far"] = deviation.too_far;
   report.details["colour_range_um"] = 1e3 * range;
   report.figures = figures_of(deviation.all);
-  if (compared.faces.count() > 0) {
-    report.tables.push_back(faces_table(compared.faces, request.face_names, deviation.regions));
-    report.details["faces"] = faces_json(compared.faces, request.face_names, deviation.regions);
+  if (faces.count() > 0) {
+    report.tables.push_back(faces_table(faces, request.face_names, deviation.regions));
+    report.details["faces"] = faces_json(faces, request.face_names, deviation.regions);
   }
+  return report;
+}
+
+/// Notes and details of what a histogram and a choice of the points leave open.
+void add_streamed(const StreamedScan& scan, EvaluationReport& report) {
+  if (scan.least == nullptr) return;
+  nlohmann::ordered_json bounds;
+  double largest = 0;
+  for (const auto& [symbol, fraction] : {std::pair{"p5", 0.05}, std::pair{"p25", 0.25}, std::pair{"median", 0.5},
+                                         std::pair{"p75", 0.75}, std::pair{"p95", 0.95}}) {
+    const double bound = scan.histogram->percentile(fraction).bound;
+    bounds[symbol] = 1e3 * bound;
+    largest = std::max(largest, bound);
+  }
+  const auto place = [&](const char* key, const SampledPoint& point) {
+    report.details[key] = {{"point", point.number + 1},
+                           {"at_mm", {point.point.x(), point.point.y(), point.point.z()}},
+                           {"deviation_um", 1e3 * point.deviation_mm}};
+  };
+  report.details["percentile_error_at_most_um"] = bounds;
+  place("least", *scan.least);
+  place("largest", *scan.largest);
+  report.details["points_shown"] = scan.shown;
+  report.facts.emplace_back("least",
+                            fmt::format("point {} at {} mm", scan.least->number + 1, triple_text(scan.least->point)));
+  report.facts.emplace_back(
+      "largest", fmt::format("point {} at {} mm", scan.largest->number + 1, triple_text(scan.largest->point)));
+  report.notes.push_back(fmt::format(
+      "The scan was read in blocks. Percentiles are from a histogram and off by at most {:.2g} \xC2\xB5m; all other "
+      "figures are those of every point.",
+      1e3 * largest));
+  report.notes.push_back(
+      fmt::format("The picture, deviation.csv and deviation.ply show {} of {} points that count: a random sample, and "
+                  "the {} at either end.",
+                  scan.shown, scan.histogram->count(), PointSample::kExtremes));
+}
+
+constexpr std::size_t kDistributionClasses = 40;
+
+}  // namespace
+
+double deviation_colour_range(const DeviationRequest& request, const ScanComparison& compared) {
+  return request.colour_mm > 0 ? request.colour_mm : colour_range_mm(compared.counted_mm);
+}
+
+EvaluationReport deviation_report(const DeviationRequest& request, const PointCloudFile& scan, const MeshFile& part,
+                                  const ScanComparison& compared) {
+  const double range = deviation_colour_range(request, compared);
+  EvaluationReport report = report_of_figures(request, static_cast<std::size_t>(scan.cloud.size()),
+                                              facts_of(scan, part), compared.deviation, compared.faces, range);
   if (!compared.counted_mm.empty()) {
-    report.plots.push_back(distribution(compared.counted_mm, range, "Distribution of the deviations"));
+    report.plots.push_back(distribution(histogram(compared.counted_mm, -range, range, kDistributionClasses),
+                                        compared.counted_mm.size(), "Distribution of the deviations"));
   }
   add_notes(request, part, report);
+  return report;
+}
+
+EvaluationReport deviation_report(const DeviationRequest& request, const StreamedScan& scan, const MeshFile& part,
+                                  const ScanComparison& compared, double range_mm) {
+  auto facts = facts_of(*scan.file, part);
+  facts.front().second = fmt::format("{} points, {}", scan.points, cloud_words(*scan.file));
+  EvaluationReport report =
+      report_of_figures(request, scan.points, std::move(facts), compared.deviation, compared.faces, range_mm);
+  if (!compared.counted_mm.empty()) {
+    report.plots.push_back(distribution(scan.histogram->classes(-range_mm, range_mm, kDistributionClasses),
+                                        compared.deviation.all.sample.count, "Distribution of the deviations"));
+  }
+  add_notes(request, part, report);
+  add_streamed(scan, report);
   return report;
 }
 
