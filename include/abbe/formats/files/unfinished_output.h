@@ -87,6 +87,9 @@ void for_abandoned(const std::filesystem::path& output, std::string_view ending,
 /// Locks an open file or folder, for as long as it is open. @returns whether nobody else had it locked
 bool lock_if_free(const Descriptor& file);
 
+/// Whether an open file or folder still has this name: whoever was done with it may have removed it.
+bool is_named(const Descriptor& file, const std::filesystem::path& path);
+
 /// Writes all of it. @returns errno, 0 if done
 int write_all(int file, std::string_view contents);
 

@@ -24,13 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kCheckpointLine = "abbe unfinished 1\n";
 
-bool still_has_name(const Descriptor& file, const fs::path& path) {
-  struct stat open_file {
-  }, named{};
-  return ::fstat(file.number(), &open_file) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         open_file.st_dev == named.st_dev && open_file.st_ino == named.st_ino;
-}
-
 std::string read_whole(const Descriptor& file, const fs::path& called) {
   std::string contents;
   std::array<char, 1 << 16> block;
@@ -89,7 +82,7 @@ void Checkpoint::open_and_lock() {
       }
       // There are no locks on this file system.
     }
-    if (!still_has_name(*file, path_)) continue;
+    if (!is_named(*file, path_)) continue;
     held_ = std::move(file);
     return;
   }

@@ -32,14 +32,6 @@ Descriptor opened(const fs::path& path) {
   return Descriptor(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
 }
 
-/// Whether what is open still has this name.
-bool is_named(const Descriptor& file, const fs::path& path) {
-  struct stat open_file {
-  }, named{};
-  return ::fstat(file.number(), &open_file) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         open_file.st_dev == named.st_dev && open_file.st_ino == named.st_ino;
-}
-
 bool is_hexadecimal(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
 }
@@ -96,6 +88,13 @@ fs::path name_beside(const fs::path& output, std::string_view ending) {
   while (::getrandom(&random, sizeof random, 0) != sizeof random) {
   }
   return output.parent_path() / fmt::format(".{}.{:016x}{}", output.filename().string(), random, ending);
+}
+
+bool is_named(const Descriptor& file, const fs::path& path) {
+  struct stat open_file {
+  }, named{};
+  return ::fstat(file.number(), &open_file) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+         open_file.st_dev == named.st_dev && open_file.st_ino == named.st_ino;
 }
 
 bool lock_if_free(const Descriptor& file) { return ::flock(file.number(), LOCK_EX | LOCK_NB) == 0; }

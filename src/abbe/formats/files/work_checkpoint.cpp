@@ -43,14 +43,6 @@ std::size_t size_of(const Descriptor& file) {
   return ::fstat(file.number(), &found) == 0 ? static_cast<std::size_t>(found.st_size) : 0;
 }
 
-/// Whether the open file still has this name: whoever was done with it may have removed it.
-bool still_has_name(const Descriptor& file, const fs::path& path) {
-  struct stat open_file {
-  }, named{};
-  return ::fstat(file.number(), &open_file) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         open_file.st_dev == named.st_dev && open_file.st_ino == named.st_ino;
-}
-
 }  // namespace
 
 /// One list of blocks while it is worked on.
@@ -163,7 +155,7 @@ void WorkCheckpoint::open_existing() {
       throw InputError({.file = path_.string()}, "another process works on these results and has not finished",
                        "another output, or that process to end");
     }
-    if (still_has_name(*file_, path_)) break;
+    if (is_named(*file_, path_)) break;
   }
   read_records();
 }
@@ -204,7 +196,7 @@ void WorkCheckpoint::begin_to_write() {
     if (error) fail_to_write(path_, error.value());
     *file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
     if (!file_->is_open() && errno != EEXIST) fail_to_write(path_, errno);
-    if (!file_->is_open() || !lock_if_free(*file_) || !still_has_name(*file_, path_)) {
+    if (!file_->is_open() || !lock_if_free(*file_) || !is_named(*file_, path_)) {
       throw InputError({.file = path_.string()}, "another process has begun to work on these results",
                        "another output, or that process to end");
     }
