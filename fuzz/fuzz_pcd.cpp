@@ -7,9 +7,11 @@
 #include "abbe/formats/shapes/pcd_file.h"
 #include "abbe/formats/shapes/pcd_header.h"
 #include "abbe/formats/text/input_error.h"
+#include "fuzz_cloud_blocks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view contents(reinterpret_cast<const char*>(data), size);
+  require_same_in_blocks(contents, "fuzz.pcd", true);
   try {
     const abbe::PointCloudFile read = abbe::parse_pcd(contents, "fuzz.pcd");
     const abbe::PointCloud& cloud = read.cloud;

@@ -6,10 +6,12 @@
 
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/text/input_error.h"
+#include "fuzz_cloud_blocks.h"
 #include "fuzz_geometry.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view contents(reinterpret_cast<const char*>(data), size);
+  require_same_in_blocks(contents, "fuzz.ply", true);
   abbe::PlyContents read;
   try {
     read = abbe::parse_ply(contents, "fuzz.ply");

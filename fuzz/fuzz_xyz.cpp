@@ -6,12 +6,14 @@
 
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
+#include "fuzz_cloud_blocks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view contents(reinterpret_cast<const char*>(data), size);
   abbe::PointCloudOptions options;
   options.threads = 1;
   for (const char* file : {"fuzz.xyz", "fuzz.csv"}) {
+    require_same_in_blocks(contents, file, false);
     abbe::PointCloudFile read;
     try {
       read = abbe::parse_point_cloud(contents, file, options);

@@ -35,7 +35,7 @@ struct LocationErrorsOverTime {
   std::vector<std::string> left_out;  ///< cycles that are not among them, a sentence each
 };
 
-/// Thermal distortion of location errors.
+/// Thermal distortion of location errors. Definitions: docs/evaluate-thermal.md.
 struct LocationDistortion {
   WarmingRun run;
   std::vector<LocationCycle> cycles;
@@ -48,12 +48,5 @@ struct LocationDistortion {
   /// What the stated uncertainties were multiplied by: sqrt(chi-square / degrees of freedom), at least 1.
   double uncertainty_factor = 1;
 };
-
-/// What the location errors do over the time of a test (the fourth test of ISO 230-3: rotary motion of components).
-///
-/// chi-square of a location error's changes about its weighted mean has cycles - 1 degrees of freedom. Definitions:
-/// docs/evaluate-thermal.md.
-/// @param run  from a time at or after the first cycle to a later one, at or before the last
-LocationDistortion evaluate_location_distortion(const LocationErrorsOverTime& found, const WarmingRun& run);
 
 }  // namespace abbe

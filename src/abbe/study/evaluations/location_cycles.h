@@ -21,4 +21,11 @@ namespace abbe {
 LocationErrorsOverTime location_errors_over_time(const Study& study, const Campaign& campaign,
                                                  const CycleChoice& choice, const std::string& file);
 
+/// What the location errors do over the time of a test (the fourth test of ISO 230-3: rotary motion of components).
+///
+/// chi-square of a location error's changes about its weighted mean has cycles - 1 degrees of freedom. Definitions:
+/// docs/evaluate-thermal.md.
+/// @param run  from a time at or after the first cycle to a later one, at or before the last
+LocationDistortion evaluate_location_distortion(const LocationErrorsOverTime& found, const WarmingRun& run);
+
 }  // namespace abbe

@@ -1,10 +1,9 @@
-#include "abbe/verify/thermal/location_distortion.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "abbe/identify/distributions.h"
+#include "abbe/study/evaluations/location_cycles.h"
 
 namespace abbe {
 namespace {
