@@ -210,7 +210,7 @@ TEST_F(StreamedDeviations, SayWhatIsWrongWithTheFile) {
   EXPECT_THAT(message_of([&] { in_blocks(text); }), HasSubstr("bad.xyz:3:3: y: 'x' is not a number"));
   options_.above = 0;
   const std::string empty = write("empty.csv", "x_mm,y_mm,z_mm\n");
-  EXPECT_THAT(message_of([&] { in_blocks(empty); }), HasSubstr("there is no point"));
+  EXPECT_THAT(message_of([&] { in_blocks(empty); }), HasSubstr("there are no rows below the header"));
   const std::string ascii = write("ascii.ply",
                                   "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                                   "property float y\nproperty float z\nend_header\n1 2 3\n");

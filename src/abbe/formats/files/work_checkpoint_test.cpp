@@ -56,7 +56,10 @@ class Numbers {
 
 class WorkCheckpointTest : public testing::Test {
  protected:
-  WorkCheckpointTest() : folder_(test::empty_folder("work-checkpoint")) {
+  WorkCheckpointTest()
+      : folder_(test::empty_folder(
+            (std::string("work-checkpoint-") + testing::UnitTest::GetInstance()->current_test_info()->name())
+                .c_str())) {
     Numbers numbers;
     work_in_threads(numbers.work());
     expected_ = numbers.values();
