@@ -99,7 +99,7 @@ def main():
             raise SystemExit((options.folder / "out.txt").read_text())
         summary = json.loads((options.folder / "results/summary.json").read_text())
         print(f"{options.readings} readings, {size / 2**20:.0f} MiB of text: {seconds:.1f} s, {memory:.0f} MiB resident,"
-              f" exit code {code}, chi-square / degrees of freedom {summary.get('variance_factor')}")
+              f" exit code {code}, residuals {summary['normalised_residual_rms']:.4f} times as large as stated")
     finally:
         shutil.rmtree(options.folder)
 
