@@ -6,6 +6,7 @@
 import argparse
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -226,6 +227,64 @@ def killed_and_resumed(runs):
         require(not kept.exists(), "left over after the results are whole")
 
 
+def study_of_files(runs, copies):
+    """The ball bar of the examples with its readings in two files, many times over, that do not fit into memory."""
+    text = (runs.examples / "trunnion/ball-bar.study.toml").read_text()
+    text = text.replace('"../machines/', f'"{runs.examples}/machines/', 1)
+    simulated = runs.out / "simulated.study.toml"
+    simulated.write_text(text)
+    done = runs.alone("simulate", simulated, "-o", runs.out / "simulated")
+    require(done.returncode == 0, done.stderr)
+    header, rows = (runs.out / "simulated/bar.csv").read_text().split("\n", 1)
+    names = [name for name in header.split(",") if name != "time_s"]
+    at = header.split(",").index("time_s")
+    rows = "".join(",".join(row.split(",")[:at] + row.split(",")[at + 1:]) + "\n" for row in rows.split())
+    data = ""
+    for name, times in (("first.csv", copies), ("second.csv", copies + 1)):
+        (runs.out / name).write_text(",".join(names) + "\n" + times * rows)
+        data += f'[[setup.data]]\nfile = "{name}"\n\n'
+    text = re.sub(r"(?s)\[simulate\].*?(?=\[\[setup\]\])", "", text)
+    text = re.sub(r"(?s)\[\[setup\.plan\]\].*?(?=\[\[setup\.plan\]\]|\[identify\])", "", text)
+    text = re.sub(r"held_out_fraction = [\d.]+", "held_out_fraction = 0\nreadings_in_memory = 2000", text)
+    study = runs.out / "bar.study.toml"
+    study.write_text(text.replace("[identify]", data + "[identify]", 1))
+    require("readings_in_memory" in study.read_text(), "the study has changed")
+    return study
+
+
+def read_again(runs):
+    """Readings in files give the same bytes for any number of processes."""
+    study = study_of_files(runs, 20)
+    expected = None
+    for processes in (0, 2, 3):
+        out = runs.out / "results"
+        done = runs.together(processes, "run", study, "-o", out) if processes else runs.alone("run", study, "-o", out)
+        require("are read again for every sum" in done.stdout and done.returncode in (0, 1), done.stdout, done.stderr)
+        expected = expected or files_of(out)
+        require(files_of(out) == expected, processes, "processes: other bytes")
+        shutil.rmtree(out)
+
+
+def read_again_after_a_kill(runs):
+    """Readings in files: a run that was killed goes on from its sums to the same bytes."""
+    study, out, kept = study_of_files(runs, 500), runs.out / "results", runs.out / "results.unfinished"
+    alone = runs.alone("run", study, "-o", out)
+    require(alone.returncode in (0, 1), alone.stderr)
+    expected = files_of(out)
+    shutil.rmtree(out)
+    first = subprocess.Popen([runs.abbe, "run", study, "-o", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    while not kept.exists() or kept.stat().st_size < 100000:
+        require(first.poll() is None, "the work ended before it was disturbed")
+        time.sleep(0.005)
+    first.kill()
+    first.communicate()
+    require(not out.exists(), "results of a killed run")
+    done = runs.alone("run", study, "-o", out)
+    require("blocks of the sums over the readings are taken from" in done.stderr, done.stderr)
+    require(files_of(out) == expected, "other bytes after a resumption")
+    require(not kept.exists(), "left over after the results are whole")
+
+
 def two_jobs(runs):
     """A second job on the same results is refused as long as the first one works."""
     study = monte_carlo_study(runs, "study", runs.samples, 1)
@@ -247,6 +306,7 @@ def two_jobs(runs):
 
 
 CASES = {"MonteCarlo": monte_carlo, "Maps": maps, "KilledAndResumed": killed_and_resumed, "TwoJobs": two_jobs,
+         "ReadAgain": read_again, "ReadAgainAfterAKill": read_again_after_a_kill,
          "SameBytes": same_bytes, "WorkersOfOtherFiles": other_files, "LostProcess": lost_process,
          "OtherSubcommands": other_subcommands, "MissingProgram": missing_program}
 

@@ -27,7 +27,8 @@ struct NumberedWork {
   int threads = 0;         ///< as for_each_block()
   /// Several blocks may be computed at a time, each on one thread; else one after the other, each with all threads.
   bool in_parallel = true;
-  bool for_all = false;  ///< every process goes on with the results; else the first one alone has them all
+  bool is_followed = false;  ///< more such work follows, so nobody knows how long all of it takes
+  bool for_all = false;      ///< every process goes on with the results; else the first one alone has them all
 
   /// Fingerprint of everything that the results depend on: equal ones may be mixed.
   std::function<std::uint64_t()> fingerprint;

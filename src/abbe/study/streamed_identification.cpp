@@ -60,6 +60,7 @@ class StreamedSums {
     std::size_t done = 0;
     NumberedWork work{.name = "sums over the readings", .blocks = parts.size(), .threads = threads_};
     work.in_parallel = false;
+    work.is_followed = true;
     work.for_all = true;
     work.fingerprint = [&] { return fingerprint(request); };
     work.compute = [&](std::size_t block) {

@@ -89,7 +89,8 @@ class WorkCheckpoint::OneWork {
     not_written_.push_back(block);
     const double elapsed = all_.seconds() - begin_s_, done = static_cast<double>(not_written_.size());
     const double remaining = elapsed * (static_cast<double>(open_) - done) / done;
-    if (all_.seconds() < all_.options_.after_s || remaining < all_.options_.remaining_s) return;
+    if (all_.seconds() < all_.options_.after_s) return;
+    if (!work_.is_followed && remaining < all_.options_.remaining_s) return;
     all_.begin_to_write();
     is_written_ = true;
     for (const std::size_t earlier : not_written_) append(earlier);
