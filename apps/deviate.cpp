@@ -36,7 +36,7 @@ int run_deviate(const DeviateCommand& command) {
   request.page = !command.options.output.empty();
   StreamingOptions streaming = command.streaming;
   streaming.output = command.options.output;
-  streaming.tell = [](const std::string& text) { tell("abbe: {}\n", text); };
+  streaming.tell = tell_sentence;
   const ScanDeviations result = deviations_of_file(std::move(request), command.files.scan_options(), streaming,
                                                    {.progress = Progress("comparing").callback()});
   const auto files = streaming.output.empty() ? decltype(deviation_files(result))() : deviation_files(result);

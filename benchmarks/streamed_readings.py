@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Time and memory of an identification from readings that do not fit into memory.
 
-    benchmarks/streamed_readings.py build/release/bin/abbe --readings 10000000 --folder /tmp/readings
+    benchmarks/streamed_readings.py build/release/bin/abbe --readings 10000000 --folder readings
 
 Simulates the ball bar of examples/trunnion nearly without noise, repeats its readings with noise of 0.2 um until there
 are as many as asked for, in four files, and identifies from them with `readings_in_memory`. Prints time and the largest

@@ -22,15 +22,7 @@ constexpr std::size_t kPiece = 4096;  // poses of one thread at a time
 /// Poses of a five-axis mill away from the tilt at which its axes are parallel, and where the tool is wanted at them.
 struct Setting {
   Setting() : inverse(five_axis.machine, five_axis.errors), baseline(five_axis.machine, five_axis.errors) {
-    RandomStream random(7);
-    for (std::size_t i = 0; i < 5; ++i) {
-      const Axis& axis = five_axis.machine.axes[i];
-      for (std::size_t k = 0; k < kPoses; ++k) {
-        commands[i].push_back(axis.name == "A" ? random.uniform(0.2, 1.2)
-                                               : 0.98 * random.uniform(axis.travel_min, axis.travel_max));
-      }
-      corrected[i].resize(kPoses);
-    }
+    for (std::vector<double>& of_axis : corrected) of_axis.resize(kPoses);
     status.resize(kPoses);
   }
   void correct(std::size_t first, std::size_t count) {
@@ -45,7 +37,7 @@ struct Setting {
   FiveAxisCase five_axis;
   CompensatedInverse inverse;
   EigenChain baseline;
-  std::array<std::vector<double>, 5> commands, corrected;
+  std::array<std::vector<double>, 5> commands = commands_to_correct(five_axis, kPoses), corrected;
   std::vector<CorrectionStatus> status;
 };
 

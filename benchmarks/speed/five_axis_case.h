@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -97,5 +98,35 @@ struct Commands {
     }
   }
 };
+
+/// Rows of the Jacobian of a point: its coordinates, at a block of poses.
+class CoordinateRows {
+ public:
+  CoordinateRows() = default;
+  CoordinateRows(const CoordinateRows&) = delete;
+  CoordinateRows& operator=(const CoordinateRows&) = delete;
+  const RowArrays (&rows() const)[3] { return rows_; }
+
+ private:
+  std::vector<double> one_ = std::vector<double>(ChainPlan::kBlockSize, 1.0);
+  std::vector<double> none_ = std::vector<double>(ChainPlan::kBlockSize, 0.0);
+  RowArrays rows_[3] = {{{one_.data(), none_.data(), none_.data()}, {}},
+                        {{none_.data(), one_.data(), none_.data()}, {}},
+                        {{none_.data(), none_.data(), one_.data()}, {}}};
+};
+
+/// Random commands within the travel, away from the tilt at which the axes of the head are parallel: [axes][count].
+inline std::array<std::vector<double>, 5> commands_to_correct(const FiveAxisCase& five_axis, std::size_t count) {
+  RandomStream random(7);
+  std::array<std::vector<double>, 5> commands;
+  for (std::size_t i = 0; i < 5; ++i) {
+    const Axis& axis = five_axis.machine.axes[i];
+    for (std::size_t k = 0; k < count; ++k) {
+      commands[i].push_back(axis.name == "A" ? random.uniform(0.2, 1.2)
+                                             : 0.98 * random.uniform(axis.travel_min, axis.travel_max));
+    }
+  }
+  return commands;
+}
 
 }  // namespace abbe::benchmarks

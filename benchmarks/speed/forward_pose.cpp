@@ -192,15 +192,12 @@ void jacobian_one_core(benchmark::State& state) {
   constexpr std::size_t n = ChainPlan::kBlockSize;
   std::vector<std::size_t> parameters(s.five_axis.errors.parameter_count());
   std::iota(parameters.begin(), parameters.end(), std::size_t{0});
-  const std::vector<double> one(n, 1.0), none(n, 0.0);
-  const RowArrays rows[3] = {{{one.data(), none.data(), none.data()}, {}},
-                             {{none.data(), one.data(), none.data()}, {}},
-                             {{none.data(), none.data(), one.data()}, {}}};
+  const CoordinateRows coordinates;
   std::vector<double> jacobian(parameters.size() * 3 * n);
   s.transform(0, n, true);
   for (auto _ : state) {
-    s.plan.differentiate({s.commands.pointers, n}, {}, {s.seen[0], s.seen[1], s.seen[2]}, rows, parameters,
-                         jacobian.data(), 3 * n);
+    s.plan.differentiate({s.commands.pointers, n}, {}, {s.seen[0], s.seen[1], s.seen[2]}, coordinates.rows(),
+                         parameters, jacobian.data(), 3 * n);
     benchmark::DoNotOptimize(jacobian.data());
     benchmark::ClobberMemory();
   }

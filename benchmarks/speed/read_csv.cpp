@@ -1,7 +1,6 @@
 // Reading a measurement file of 1,000,000 rows: the reader of the product against std::ifstream, std::getline and
 // std::stod in the same run. The file is in the page cache, so that what is measured is the reading.
 #include <benchmark/benchmark.h>
-#include <fmt/format.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -9,35 +8,17 @@
 #include <sstream>
 #include <string>
 
-#include "abbe/errors/random_stream.h"
-#include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/measurement_file.h"
+#include "tracker_csv.h"
 
 namespace {
 
 constexpr int kRows = 1'000'000;
 
-abbe::Machine machine() {
-  return abbe::parse_machine(
-      "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
-      "[axis.Z]\ntravel_mm = [0, 600]\n",
-      "machine");
-}
-
-/// A file like those of a laser tracker: three commands, a reflector, its offset, the measured point.
 const std::string& measurement_file() {
   static const std::string path = [] {
     const std::string name = (std::filesystem::temp_directory_path() / "abbe_read_csv.csv").string();
-    std::FILE* file = std::fopen(name.c_str(), "w");
-    std::fputs("X_mm,Z_mm,C_deg,reflector,measured_x_mm,measured_y_mm,measured_z_mm\n", file);
-    abbe::RandomStream random(1);
-    for (int i = 0; i < kRows; ++i) {
-      const std::string line = fmt::format("{:.9f},{:.9f},{},T{},{:.9f},{:.9f},{:.9f}\n", random.uniform(0, 1400),
-                                           random.uniform(0, 600), 5 * (i % 72), 1 + i % 3, random.uniform(-1000, 1000),
-                                           random.uniform(-1000, 1000), random.uniform(-1000, 1000));
-      std::fputs(line.c_str(), file);
-    }
-    std::fclose(file);
+    abbe::benchmarks::write_tracker_csv(name, kRows);
     return name;
   }();
   return path;
@@ -75,7 +56,7 @@ void plain_streams(benchmark::State& state) {
 
 void abbe_reader(benchmark::State& state) {
   const std::string& path = measurement_file();
-  const abbe::Machine m = machine();
+  const abbe::Machine m = abbe::benchmarks::machine_of_tracker_csv();
   abbe::MeasurementOptions options;
   options.threads = static_cast<int>(state.range(0));
   for (auto _ : state) {

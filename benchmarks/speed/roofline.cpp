@@ -10,12 +10,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <numeric>
 
 #include "abbe/compensate/compensated_inverse.h"
-#include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/surface/closest_point.h"
@@ -26,6 +24,7 @@
 #include "instruction_set.h"
 #include "machine_peak.h"
 #include "scan_case.h"
+#include "tracker_csv.h"
 
 namespace abbe::benchmarks {
 namespace {
@@ -135,10 +134,7 @@ void print_poses(const Peak& peak, const FiveAxisCase& five_axis) {
   constexpr std::size_t n = ChainPlan::kBlockSize;
   std::vector<std::size_t> parameters(five_axis.errors.parameter_count());
   std::iota(parameters.begin(), parameters.end(), std::size_t{0});
-  const std::vector<double> one(n, 1.0), none(n, 0.0);
-  const RowArrays rows[3] = {{{one.data(), none.data(), none.data()}, {}},
-                             {{none.data(), one.data(), none.data()}, {}},
-                             {{none.data(), none.data(), one.data()}, {}}};
+  const CoordinateRows coordinates;
   std::vector<double> jacobian(parameters.size() * 3 * n);
   poses.transform(0, n);
   const double elements = 3.0 * static_cast<double>(parameters.size());
@@ -148,8 +144,8 @@ void print_poses(const Peak& peak, const FiveAxisCase& five_axis) {
   derivatives.time = fastest(200,
                              [&] {
                                poses.plan.differentiate({poses.commands.pointers, n}, {},
-                                                        {poses.seen[0], poses.seen[1], poses.seen[2]}, rows, parameters,
-                                                        jacobian.data(), 3 * n);
+                                                        {poses.seen[0], poses.seen[1], poses.seen[2]},
+                                                        coordinates.rows(), parameters, jacobian.data(), 3 * n);
                              }) /
                      n;
   print(peak, derivatives);
@@ -158,16 +154,11 @@ void print_poses(const Peak& peak, const FiveAxisCase& five_axis) {
 void print_inverse(const Peak& peak, const FiveAxisCase& five_axis) {
   constexpr std::size_t kPoses = 4096;
   const CompensatedInverse inverse(five_axis.machine, five_axis.errors);
-  RandomStream random(7);
-  std::array<std::vector<double>, 5> commands, corrected;
+  const std::array<std::vector<double>, 5> commands = commands_to_correct(five_axis, kPoses);
+  std::array<std::vector<double>, 5> corrected;
   std::array<const double*, 5> in{};
   std::array<double*, 5> out{};
   for (std::size_t i = 0; i < 5; ++i) {
-    const Axis& axis = five_axis.machine.axes[i];
-    for (std::size_t k = 0; k < kPoses; ++k) {
-      commands[i].push_back(axis.name == "A" ? random.uniform(0.2, 1.2)
-                                             : 0.98 * random.uniform(axis.travel_min, axis.travel_max));
-    }
     corrected[i].resize(kPoses);
     in[i] = commands[i].data();
     out[i] = corrected[i].data();
@@ -205,20 +196,8 @@ void print_csv(const Peak& peak) {
   constexpr int kRows = 500'000;
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / fmt::format("abbe_roofline_{}.csv", static_cast<long>(seconds() * 1e6));
-  {
-    std::ofstream file(path);
-    file << "X_mm,Z_mm,C_deg,reflector,measured_x_mm,measured_y_mm,measured_z_mm\n";
-    RandomStream random(1);
-    for (int i = 0; i < kRows; ++i) {
-      file << fmt::format("{:.9f},{:.9f},{},T{},{:.9f},{:.9f},{:.9f}\n", random.uniform(0, 1400),
-                          random.uniform(0, 600), 5 * (i % 72), 1 + i % 3, random.uniform(-1000, 1000),
-                          random.uniform(-1000, 1000), random.uniform(-1000, 1000));
-    }
-  }
-  const Machine machine = parse_machine(
-      "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
-      "[axis.Z]\ntravel_mm = [0, 600]\n",
-      "machine");
+  write_tracker_csv(path.string(), kRows);
+  const Machine machine = machine_of_tracker_csv();
   MeasurementOptions options;
   options.threads = 2;
   const auto bytes = static_cast<double>(std::filesystem::file_size(path));

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -21,11 +23,11 @@ class Digest {
     // What is no number has many patterns of bits, which say nothing.
     add(std::bit_cast<std::uint64_t>(std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value));
   }
+  /// In words of 8 bytes, as the processor reads them.
   void add_bytes(std::span<const std::byte> bytes) {
     for (std::size_t k = 0; k < bytes.size(); k += 8) {
       std::uint64_t word = 0;
-      for (std::size_t i = 0; i < 8 && k + i < bytes.size(); ++i)
-        word |= static_cast<std::uint64_t>(bytes[k + i]) << (8 * i);
+      std::memcpy(&word, bytes.data() + k, std::min<std::size_t>(8, bytes.size() - k));
       add(word);
     }
     add(bytes.size());

@@ -30,11 +30,11 @@ struct StreamingOptions {
 /// Whether a scan is read in blocks: its file is binary PLY or PCD and states more points than `above`, or is a text
 /// of more than kBytesOfPointInText bytes for each of them.
 /// @throws InputError for a file of another kind that is as large: it cannot be read in blocks
-bool is_streamed(const std::string& scan_file, std::uint64_t above);
+bool is_read_in_blocks(const std::string& scan_file, std::uint64_t above);
 
-/// As find_deviations(), of the file `scan_file` of the request, which is read in blocks where is_streamed(); otherwise
-/// as a whole. In blocks, percentiles are from a histogram; all other figures are exact. Neither threads nor blocks nor
-/// kills make a difference to any byte of the result.
+/// As find_deviations(), of the file `scan_file` of the request, which is read in blocks where is_read_in_blocks();
+/// otherwise as a whole. In blocks, percentiles are from a histogram; all other figures are exact. Neither threads nor
+/// blocks nor kills make a difference to any byte of the result.
 /// @param request  without the scan
 /// @param scan     how to read it
 /// @param job      progress: bytes of the scan that were read of those to be read now, by the calling thread

@@ -84,6 +84,7 @@ void add_to(Digest& digest, const ErrorSet& errors) {
     digest.add(reversal.axis);
     digest.add_number(reversal.value);
   }
+  digest.add(errors.reversals.size());
   add_vector(digest, errors.tool_offset_error);
   add_choice(digest, errors.composition.order);
   add_choice(digest, errors.composition.first_order);

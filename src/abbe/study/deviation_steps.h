@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to study: what find_deviations() and stream_deviations() do alike.
+// Internal to study: what find_deviations() and deviations_of_file() do alike.
 #include "abbe/report/evaluations/deviation_report.h"
 #include "abbe/study/scan_deviations.h"
 

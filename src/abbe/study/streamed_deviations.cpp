@@ -13,8 +13,10 @@
 #include "abbe/formats/files/checkpoint.h"
 #include "abbe/formats/files/file_stamp.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/files/unfinished_output.h"
 #include "abbe/formats/shapes/point_cloud_blocks.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/digest.h"
 #include "abbe/report/drawings/deviation_colours.h"
 #include "abbe/report/drawings/surface_picture.h"
 #include "abbe/report/evaluations/deviation_report.h"
@@ -28,14 +30,10 @@ namespace {
 
 /// Number that differs where the surfaces differ.
 std::uint64_t mark_of_mesh(const TriangleMesh& mesh) {
-  std::uint64_t mark = 0;
-  for (const double value : mesh.vertices.reshaped()) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    mark = hash_of_number(mark ^ bits);
-  }
-  for (const std::uint32_t vertex : mesh.triangles.reshaped()) mark = hash_of_number(mark ^ vertex);
-  return mark;
+  Digest digest;
+  for (const double value : mesh.vertices.reshaped()) digest.add_number(value);
+  for (const std::uint32_t vertex : mesh.triangles.reshaped()) digest.add(vertex);
+  return digest.value();
 }
 
 std::string options_text(const ScanDeviationsRequest& request, const PointCloudOptions& scan) {
@@ -148,7 +146,7 @@ class StreamJob {
     const std::string& state = unfinished_->found();
     std::uint64_t place[2] = {0, 0};
     const auto refuse = [&] {
-      throw InputError({.file = Checkpoint::name_of(options_.output).string()}, "is damaged",
+      throw InputError({.file = unfinished_name(options_.output).string()}, "is damaged",
                        "a checkpoint of this job; or remove the file, to begin anew");
     };
     if (state.size() < sizeof place) refuse();
@@ -162,7 +160,7 @@ class StreamJob {
     at_ = place[0];
     not_finite_ = place[1];
     if (!options_.tell) return;
-    options_.tell(fmt::format("{}: goes on behind point {}", Checkpoint::name_of(options_.output).string(),
+    options_.tell(fmt::format("{}: goes on behind point {}", unfinished_name(options_.output).string(),
                               sums_.points() + not_finite_));
   }
 
@@ -240,7 +238,7 @@ ScanDeviations StreamJob::result() {
 
 }  // namespace
 
-bool is_streamed(const std::string& scan_file, std::uint64_t above) {
+bool is_read_in_blocks(const std::string& scan_file, std::uint64_t above) {
   const MappedFile file(scan_file);
   const std::uint64_t bytes = file.text().size();
   // Fewer bytes than a point can have.
@@ -258,7 +256,7 @@ bool is_streamed(const std::string& scan_file, std::uint64_t above) {
 
 ScanDeviations deviations_of_file(ScanDeviationsRequest request, const PointCloudOptions& scan,
                                   const StreamingOptions& options, const JobOptions& job) {
-  if (!is_streamed(request.scan_file, options.above)) {
+  if (!is_read_in_blocks(request.scan_file, options.above)) {
     request.scan = read_point_cloud(request.scan_file, scan);
     return find_deviations(request, job.stop);
   }

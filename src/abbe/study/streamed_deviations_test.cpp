@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "abbe/formats/files/checkpoint.h"
+#include "abbe/formats/files/unfinished_output.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
@@ -96,7 +97,7 @@ class StreamedDeviations : public testing::Test {
 TEST_F(StreamedDeviations, AreThoseOfTheScanInMemoryInEveryFormat) {
   for (const std::string& file : {ply(), xyz(), write("scan.csv", point_cloud_csv(cloud_)), pcd(3)}) {
     const ScanDeviations all = as_a_whole(file), streamed = in_blocks(file);
-    ASSERT_TRUE(is_streamed(file, options_.above)) << file;
+    ASSERT_TRUE(is_read_in_blocks(file, options_.above)) << file;
     const DeviationStatistics &a = all.compared.deviation.all, &b = streamed.compared.deviation.all;
     EXPECT_EQ(a.sample.count, b.sample.count) << file;
     EXPECT_EQ(all.compared.deviation.too_far, streamed.compared.deviation.too_far);
@@ -166,7 +167,7 @@ TEST_F(StreamedDeviations, GoOnAfterAKillWithTheSameBytes) {
   int status = 0;
   ::waitpid(child, &status, 0);
   ASSERT_TRUE(WIFSIGNALED(status));
-  const fs::path left = Checkpoint::name_of(options_.output);
+  const fs::path left = unfinished_name(options_.output);
   ASSERT_GT(fs::file_size(left), 100U);
   // Other options are refused, and the checkpoint stays.
   request_.largest_mm = 0.2;
@@ -191,7 +192,7 @@ TEST_F(StreamedDeviations, StopWithACheckpoint) {
   job.stop = source.get_token();
   job.progress = [&](std::size_t, std::size_t) { source.request_stop(); };
   EXPECT_THROW(in_blocks(ply(), job), Stopped);
-  EXPECT_GT(fs::file_size(Checkpoint::name_of(options_.output)), 100U);
+  EXPECT_GT(fs::file_size(unfinished_name(options_.output)), 100U);
 }
 
 TEST_F(StreamedDeviations, SayWhatIsWrongWithTheFile) {

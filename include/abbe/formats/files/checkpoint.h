@@ -31,9 +31,6 @@ class Checkpoint {
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
 
-  /// OUTPUT.unfinished of an output.
-  static std::filesystem::path name_of(const std::filesystem::path& output);
-
   /// What was found; empty: nothing.
   const std::string& found() const { return found_; }
   /// @throws InputError if it cannot be written whole; the state before is then still there

@@ -84,6 +84,9 @@ class UnfinishedOutput {
 void for_abandoned(const std::filesystem::path& output, std::string_view ending,
                    const std::function<void(const std::filesystem::path&)>& found);
 
+/// OUTPUT.unfinished of an output: where long work is kept until that is whole.
+std::filesystem::path unfinished_name(const std::filesystem::path& output);
+
 /// Locks an open file or folder, for as long as it is open. @returns whether nobody else had it locked
 bool lock_if_free(const Descriptor& file);
 

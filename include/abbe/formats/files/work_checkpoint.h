@@ -61,7 +61,7 @@ class WorkCheckpoint {
   double seconds() const;
   void tell(const std::string& sentence) const;
 
-  std::filesystem::path output_, path_;
+  std::filesystem::path path_;
   CheckpointOptions options_;
   std::unique_ptr<Descriptor> file_;
   std::map<std::uint64_t, std::map<std::size_t, Place>> found_;  // by fingerprint and block

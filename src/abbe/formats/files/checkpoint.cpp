@@ -11,10 +11,10 @@
 #include <cstring>
 #include <system_error>
 
+#include "abbe/formats/files/crc32c.h"
 #include "abbe/formats/files/remove_unfinished.h"
 #include "abbe/formats/files/unfinished_output.h"
 #include "abbe/formats/files/write_error.h"
-#include "abbe/formats/shapes/e57_pages.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
@@ -47,15 +47,8 @@ std::string checksum_bytes(std::string_view contents) {
 
 }  // namespace
 
-fs::path Checkpoint::name_of(const fs::path& output) {
-  fs::path name = output;
-  if (name.filename().empty()) name = name.parent_path();
-  name += ".unfinished";
-  return name;
-}
-
 Checkpoint::Checkpoint(const fs::path& output, CheckpointFacts facts)
-    : called_(name_of(output)), path_(name_of(resolved_output(output))), facts_(std::move(facts)) {
+    : called_(unfinished_name(output)), path_(unfinished_name(resolved_output(output))), facts_(std::move(facts)) {
   std::error_code error;
   fs::create_directories(path_.parent_path(), error);
   if (error) fail_to_write(called_, error.value());

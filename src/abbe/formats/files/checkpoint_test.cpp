@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "abbe/formats/files/empty_folder_for_test.h"
+#include "abbe/formats/files/unfinished_output.h"
 #include "abbe/formats/text/message_of.h"
 
 namespace abbe {
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 TEST(CheckpointOfAJob, IsFoundByTheSameJobOnly) {
-  const fs::path output = test::empty_folder("abbe_checkpoint") / "new" / "out", file = Checkpoint::name_of(output);
+  const fs::path output = test::empty_folder("abbe_checkpoint") / "new" / "out", file = unfinished_name(output);
   const CheckpointFacts facts{{"scan", "12 bytes"}, {"part", "3"}};
   { const Checkpoint nothing(output, facts); }
   EXPECT_FALSE(fs::exists(file));
@@ -37,7 +38,7 @@ TEST(CheckpointOfAJob, IsFoundByTheSameJobOnly) {
 }
 
 TEST(CheckpointOfAJob, ThatIsDamagedIsRefused) {
-  const fs::path output = test::empty_folder("abbe_checkpoint_damaged") / "out", file = Checkpoint::name_of(output);
+  const fs::path output = test::empty_folder("abbe_checkpoint_damaged") / "out", file = unfinished_name(output);
   const CheckpointFacts facts{{"scan", "12 bytes"}};
   { Checkpoint(output, facts).save("state"); }
   std::fstream(file, std::ios::in | std::ios::out).seekp(-6, std::ios::end) << "X";

@@ -97,6 +97,13 @@ bool is_named(const Descriptor& file, const fs::path& path) {
          open_file.st_dev == named.st_dev && open_file.st_ino == named.st_ino;
 }
 
+fs::path unfinished_name(const fs::path& output) {
+  fs::path name = output;
+  if (name.filename().empty()) name = name.parent_path();
+  name += ".unfinished";
+  return name;
+}
+
 bool lock_if_free(const Descriptor& file) { return ::flock(file.number(), LOCK_EX | LOCK_NB) == 0; }
 
 UnfinishedOutput::UnfinishedOutput(const fs::path& output, Kind kind, const fs::path& called) : output_(output) {

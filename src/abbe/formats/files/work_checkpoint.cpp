@@ -10,9 +10,9 @@
 #include <cerrno>
 #include <cstring>
 
+#include "abbe/formats/files/crc32c.h"
 #include "abbe/formats/files/unfinished_output.h"
 #include "abbe/formats/files/write_error.h"
-#include "abbe/formats/shapes/e57_pages.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
@@ -113,10 +113,7 @@ class WorkCheckpoint::OneWork {
 };
 
 WorkCheckpoint::WorkCheckpoint(const fs::path& output, CheckpointOptions options)
-    : output_(output), path_(output), options_(std::move(options)), file_(std::make_unique<Descriptor>()) {
-  if (path_.filename().empty()) path_ = path_.parent_path();
-  path_ += ".unfinished";
-}
+    : path_(unfinished_name(output)), options_(std::move(options)), file_(std::make_unique<Descriptor>()) {}
 
 bool WorkCheckpoint::fits(const fs::path& output) {
   if (output.empty() || output == "-") return false;

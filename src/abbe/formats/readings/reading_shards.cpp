@@ -10,6 +10,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/readings/shard_index.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/digest.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/stopped.h"
 #include "abbe/instruments/observations.h"
@@ -71,6 +72,12 @@ class OutermostReadings {
   std::map<std::uint16_t, std::size_t> items_;
 };
 
+std::uint64_t fingerprint_of(const std::string& text) {
+  Digest digest;
+  digest.add_text(text);
+  return digest.value();
+}
+
 bool is_drawn(std::size_t reading, std::size_t wanted, std::size_t count) {
   if (wanted >= count) return true;
   RandomStream random(0x5eed, reading);
@@ -123,6 +130,7 @@ void ReadingShards::Implementation::open_files() {
 
 void ReadingShards::Implementation::find_all_rows() {
   std::map<std::pair<std::size_t, std::uint64_t>, std::string> known;
+  Digest all;
   for (std::size_t f = 0; f < files.size(); ++f) {
     first_of_file.push_back(count);
     ShardRows rows = find_rows(*files[f], f, count, kTogether, [&](std::size_t bytes) { advance(bytes); });
@@ -133,10 +141,12 @@ void ReadingShards::Implementation::find_all_rows() {
                        fmt::format("every file of set-up {} once", source.setup));
     }
     count += rows.count;
-    fingerprint = bytes_fingerprint(name + std::to_string(rows.content), fingerprint);
+    all.add_text(name);
+    all.add(rows.content);
     headers.push_back(std::move(rows.header));
     parts.insert(parts.end(), rows.parts.begin(), rows.parts.end());
   }
+  fingerprint = all.value();
 }
 
 InstrumentFile ReadingShards::Implementation::parse(const ShardPart& part, const std::string& text) const {
@@ -178,8 +188,7 @@ void ReadingShards::Implementation::check_like_first(const InstrumentFile& first
 void ReadingShards::Implementation::check_all_rows() {
   // The first part of every file, one after the other, because a file may add to the instrument.
   std::optional<InstrumentFile> first;
-  std::vector<std::string> names = device->target_names();
-  for (ShardPart& part : parts) {
+  for (const ShardPart& part : parts) {
     if (part.first != first_of_file[part.file]) continue;
     InstrumentFile file = parse(part, files[part.file]->read(part.begin, part.end));
     if (!first) first = file;
@@ -187,11 +196,11 @@ void ReadingShards::Implementation::check_all_rows() {
     device = file.device;
     contradictions.insert(contradictions.end(), file.contradictions.begin(), file.contradictions.end());
   }
-  names = device->target_names();
+  const std::vector<std::string> names = device->target_names();
   for_each_block(parts.size(), source.threads, [&](std::size_t i) {
     ShardPart& part = parts[i];
     const std::string text = files[part.file]->read(part.begin, part.end);
-    part.bytes = bytes_fingerprint(text);
+    part.bytes = fingerprint_of(text);
     const InstrumentFile file = parse(part, text);
     if (file.device->target_names() != names) {
       throw InputError({.file = files[part.file]->path().string(), .line = part.line},
@@ -207,7 +216,7 @@ void ReadingShards::Implementation::check_all_rows() {
 InstrumentReadings ReadingShards::Implementation::read_part(const ShardPart& part) const {
   const PartFile& file = *files[part.file];
   const std::string text = file.read(part.begin, part.end);
-  if (bytes_fingerprint(text) != part.bytes) {
+  if (fingerprint_of(text) != part.bytes) {
     throw InputError({.file = file.path().string(), .line = part.line},
                      fmt::format("one of {} rows from here on has changed since the file was read first", part.count),
                      "a file that stays as it is until the end of the run");

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/digest.h"
 
 namespace abbe {
 namespace {
@@ -106,33 +107,14 @@ std::string PartFile::read(std::size_t begin, std::size_t end) const {
   return text;
 }
 
-std::uint64_t bytes_fingerprint(std::string_view text, std::uint64_t before) {
-  std::uint64_t state = before ^ 0x243f6a8885a308d3U;
-  const auto mix = [&state](std::uint64_t word) {
-    state = (state ^ word) * 0x9fb21c651e98df25U;
-    state ^= state >> 29;
-  };
-  std::size_t at = 0;
-  for (; at + 8 <= text.size(); at += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, text.data() + at, 8);
-    mix(word);
-  }
-  std::uint64_t rest = 0;
-  if (at < text.size()) std::memcpy(&rest, text.data() + at, text.size() - at);
-  mix(rest);
-  mix(text.size());
-  return state;
-}
-
 ShardRows find_rows(const PartFile& file, std::size_t number, std::size_t first, std::size_t together,
                     const std::function<void(std::size_t)>& read) {
   RowFinder finder(number, first, together);
   std::string line;  // begun in an earlier block
-  std::uint64_t content = 0;
+  Digest content;
   for (std::size_t begin = 0; begin < file.size(); begin += kReadTogether) {
     const std::string block = file.read(begin, std::min(file.size(), begin + kReadTogether));
-    content = bytes_fingerprint(block, content);
+    content.add_text(block);
     std::string_view rest = block;
     for (std::size_t end; (end = rest.find('\n')) != std::string_view::npos; rest.remove_prefix(end + 1)) {
       const std::string_view part = rest.substr(0, end + 1);
@@ -156,7 +138,7 @@ ShardRows find_rows(const PartFile& file, std::size_t number, std::size_t first,
   ShardRows rows = finder.finish();
   if (rows.header.empty()) throw InputError({.file = name}, "has no header", "a line with the names of the columns");
   if (rows.count == 0) throw InputError({.file = name}, "has no readings", "at least one row below the header");
-  rows.content = content;
+  rows.content = content.value();
   return rows;
 }
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace abbe {
@@ -46,8 +45,6 @@ struct ShardRows {
   std::size_t count = 0;
   std::uint64_t content = 0;  ///< fingerprint of the whole file
 };
-
-std::uint64_t bytes_fingerprint(std::string_view text, std::uint64_t before = 0);
 
 /// @param number  of the file
 /// @param first   number of its first reading; a part ends where the number of the next reading is a multiple of

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/formats/files/crc32c.h"
 #include "abbe/formats/shapes/e57_pages.h"
 
 namespace abbe {

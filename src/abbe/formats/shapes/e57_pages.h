@@ -15,9 +15,6 @@ inline constexpr std::size_t kE57PageBytes = 1024;
 inline constexpr std::size_t kE57PageData = 1020;
 inline constexpr std::size_t kE57HeaderBytes = 48;
 
-/// CRC-32C (Castagnoli's polynomial 0x1EDC6F41, reflected, all bits set at the start and inverted at the end).
-std::uint32_t crc32c(std::string_view bytes);
-
 class E57Pages {
  public:
   /// Checks the header and the checksum of every page. The contents have to outlive it.

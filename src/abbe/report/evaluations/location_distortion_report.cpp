@@ -75,19 +75,12 @@ void add_fit(const LocationDistortion& distortion, EvaluationReport& report) {
 
 EvaluationReport location_distortion_report(const std::string& file, const LocationDistortion& distortion, double pause,
                                             const std::vector<std::string>& left_out) {
-  EvaluationReport report;
-  report.kind = "location-distortion";
-  report.title = "Thermal distortion of location errors: " + file;
-  report.standard = "ISO 230-3:2020";
   const WarmingRun& run = distortion.run;
-  report.facts = {{"heating", duration_words(run.stop - run.start)}};
-  if (run.has_cooling()) report.facts.emplace_back("cooling", duration_words(run.end - run.stop));
+  EvaluationReport report = begun_warming_report("location-distortion",
+                                                 "Thermal distortion of location errors: " + file, kLocationWords, run);
   report.facts.emplace_back("cycles", std::to_string(distortion.cycles.size()));
   report.facts.emplace_back("location errors", std::to_string(distortion.locations.size()));
   if (pause > 0) report.facts.emplace_back("a cycle begins after a pause of more than", duration_words(pause));
-  report.details = nlohmann::ordered_json::object();
-  report.details["heating_s"] = run.stop - run.start;
-  report.details["cooling_s"] = run.end - run.stop;
   for (const WarmingSensor& one : distortion.locations) {
     add_warming_figures(one, run.has_cooling(), kLocationWords, report);
   }

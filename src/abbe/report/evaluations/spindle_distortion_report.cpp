@@ -13,17 +13,10 @@ constexpr WarmingWords kSpindleWords = {"rotation", "sensor", "by the rotating s
 
 EvaluationReport spindle_distortion_report(const std::string& file, const SpindleDistortion& distortion,
                                            bool lacks_distance) {
-  EvaluationReport report;
-  report.kind = "spindle-distortion";
-  report.title = "Thermal distortion by the rotating spindle: " + file;
-  report.standard = "ISO 230-3:2020";
   const WarmingRun& run = distortion.run;
-  report.facts = {{"rotation", duration_words(run.stop - run.start)}};
-  if (run.has_cooling()) report.facts.emplace_back("cooling", duration_words(run.end - run.stop));
+  EvaluationReport report = begun_warming_report(
+      "spindle-distortion", "Thermal distortion by the rotating spindle: " + file, kSpindleWords, run);
   report.facts.emplace_back("displacements and angles", std::to_string(distortion.sensors.size()));
-  report.details = nlohmann::ordered_json::object();
-  report.details["rotation_s"] = run.stop - run.start;
-  report.details["cooling_s"] = run.end - run.stop;
   bool is_stated = false;
   std::vector<const TimeSeries*> all;
   for (const WarmingSensor& one : distortion.sensors) {

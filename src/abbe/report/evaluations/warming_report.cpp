@@ -21,6 +21,20 @@ std::string constant_words(const FirstOrderResponse& response) {
 
 }  // namespace
 
+EvaluationReport begun_warming_report(const char* kind, const std::string& title, const WarmingWords& words,
+                                      const WarmingRun& run) {
+  EvaluationReport report;
+  report.kind = kind;
+  report.title = title;
+  report.standard = "ISO 230-3:2020";
+  report.facts = {{words.during, duration_words(run.stop - run.start)}};
+  if (run.has_cooling()) report.facts.emplace_back("cooling", duration_words(run.end - run.stop));
+  report.details = nlohmann::ordered_json::object();
+  report.details[fmt::format("{}_s", words.during)] = run.stop - run.start;
+  report.details["cooling_s"] = run.end - run.stop;
+  return report;
+}
+
 void add_warming_figures(const WarmingSensor& one, bool has_cooling, const WarmingWords& words,
                          EvaluationReport& report) {
   const std::string& name = one.sensor.series.name;

@@ -18,6 +18,10 @@ struct WarmingWords {
   const char* turned;     ///< "Tilt"
 };
 
+/// A report with what was heated and cooled, in words and for programs. @param title  with the name of the file
+EvaluationReport begun_warming_report(const char* kind, const std::string& title, const WarmingWords& words,
+                                      const WarmingRun& run);
+
 /// Figures d60_, d_, dcool_ and tau_ of one sensor.
 void add_warming_figures(const WarmingSensor& one, bool has_cooling, const WarmingWords& words,
                          EvaluationReport& report);

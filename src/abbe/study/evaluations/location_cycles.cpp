@@ -141,7 +141,7 @@ std::string add_cycle(const Study& study, const StudyResult& whole, const std::v
   }
   // Parameters that all cycles share are those that were not found again.
   const std::size_t free = whole.identification.statistics.parameter_count;
-  result.common_parameters = free - std::min(free, estimated_count(problem));
+  result.common_parameters = std::max(result.common_parameters, free - std::min(free, estimated_count(problem)));
   add_temperatures(study.machine, whole.campaign, readings, cycle.time, result.temperatures);
   return {};
 }
