@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/study/planned_probing.h"
+#include "abbe/study/planning/planned_probing.h"
 
 namespace abbe {
 

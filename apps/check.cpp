@@ -11,7 +11,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/words/machine_check_words.h"
-#include "abbe/study/frozen_file.h"
+#include "abbe/study/compensation/frozen_file.h"
 #include "check_geometry.h"
 #include "check_study_file.h"
 #include "command.h"

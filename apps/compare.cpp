@@ -7,7 +7,7 @@
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/pages/evaluation_files.h"
 #include "abbe/report/words/evaluation_text.h"
-#include "abbe/study/compared_campaigns.h"
+#include "abbe/study/comparison/compared_campaigns.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"

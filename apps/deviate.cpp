@@ -1,5 +1,5 @@
 #include "abbe/formats/files/checkpoint.h"
-#include "abbe/study/streamed_deviations.h"
+#include "abbe/study/scans/streamed_deviations.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

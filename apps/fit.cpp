@@ -11,7 +11,7 @@
 #include "abbe/formats/text/file_unit.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_list.h"
-#include "abbe/study/fitted_points.h"
+#include "abbe/study/scans/fitted_points.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

@@ -16,7 +16,7 @@
 #include "abbe/formats/readings/planned_touches.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/study/imported_file.h"
+#include "abbe/study/imports/imported_file.h"
 #include "command.h"
 #include "exit_code.h"
 #include "machine_options.h"

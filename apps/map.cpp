@@ -12,7 +12,7 @@
 #include "abbe/formats/machine/map_file.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/study/errors_map.h"
+#include "abbe/study/compensation/errors_map.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"

@@ -4,7 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #include "abbe/formats/files/standard_input.h"
@@ -16,22 +18,30 @@
 namespace abbe {
 namespace {
 
-Check check_of(const CLI::Validator& validator) {
-  return {[validator](const std::string& text) { return validator(text); }, validator.get_description()};
+constexpr double kLargest = std::numeric_limits<double>::max();
+
+/// `words` follow "number": "from 0 to 9".
+template <typename Number>
+Check number_check(Number from, Number to, const std::string& words) {
+  const auto problem = [=](const std::string& text) -> std::string {
+    Number value{};
+    if (CLI::detail::lexical_cast(text, value) && value >= from && value <= to) return {};
+    return fmt::format("'{}' is not a {}number {}", text, std::is_integral_v<Number> ? "whole " : "", words);
+  };
+  return {problem, words};
 }
 
 constexpr const char* kQuietWords = "No progress and no text; --json and files on standard output are still written";
 
 }  // namespace
 
-Check in_range(int from, int to) { return check_of(CLI::Range(from, to)); }
-Check in_range(double from, double to) { return check_of(CLI::Range(from, to)); }
-Check positive_number() { return check_of(CLI::PositiveNumber); }
-Check non_negative_number() { return check_of(CLI::NonNegativeNumber); }
+Check in_range(int from, int to) { return number_check(from, to, fmt::format("from {} to {}", from, to)); }
+Check in_range(double from, double to) { return number_check(from, to, fmt::format("from {} to {}", from, to)); }
+Check positive_number() { return number_check(std::numeric_limits<double>::denorm_min(), kLargest, "above 0"); }
+Check non_negative_number() { return number_check(0.0, kLargest, "of at least 0"); }
 Check one_of(const std::vector<std::string>& words) {
-  Check check = check_of(CLI::IsMember(words));
-  check.words = words;
-  return check;
+  const CLI::IsMember member(words);
+  return {[member](const std::string& text) { return member(text); }, member.get_description(), words};
 }
 
 Option* Option::required() {
@@ -40,9 +50,13 @@ Option* Option::required() {
 }
 
 Option* Option::check(const Check& check) {
-  option_->check(
-      CLI::Validator([problem = check.problem](std::string& text) { return problem(text); }, check.description));
-  if (!check.words.empty()) words_ = check.words;
+  const bool is_list = !check.words.empty();
+  option_->check(CLI::Validator([problem = check.problem](std::string& text) { return problem(text); },
+                                is_list ? check.description : ""));
+  if (is_list)
+    words_ = check.words;
+  else
+    option_->type_name(option_->get_type_name() + " " + check.description);
   return this;
 }
 

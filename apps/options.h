@@ -20,7 +20,7 @@ namespace abbe {
 /// What the text of a value has to fulfil.
 struct Check {
   std::function<std::string(const std::string& text)> problem;  ///< what is wrong with a text; empty: nothing
-  std::string description;                                      ///< for --help, behind the type: "INT in [0 - 9]"
+  std::string description;                                      ///< for --help, behind the type: "INT from 0 to 9"
   std::vector<std::string> words{};                             ///< all texts that fulfil it, if they can be listed
 };
 

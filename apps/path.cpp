@@ -10,7 +10,7 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/shapes/curve_file.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/study/planned_path.h"
+#include "abbe/study/compensation/planned_path.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"

@@ -6,7 +6,7 @@
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/study/found_positions.h"
+#include "abbe/study/compensation/found_positions.h"
 #include "command.h"
 #include "exit_code.h"
 #include "messages.h"

@@ -18,7 +18,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/study/planned_measurement.h"
+#include "abbe/study/planning/planned_measurement.h"
 #include "ball_probing.h"
 #include "command.h"
 #include "exit_code.h"

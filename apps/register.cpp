@@ -7,7 +7,7 @@
 #include "abbe/formats/machine/transform_file.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/words/registration_words.h"
-#include "abbe/study/scan_registration.h"
+#include "abbe/study/scans/scan_registration.h"
 #include "command.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"

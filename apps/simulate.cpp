@@ -5,7 +5,7 @@
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/study/campaign.h"
-#include "abbe/study/results.h"
+#include "abbe/study/report/results.h"
 #include "command.h"
 #include "exit_code.h"
 #include "options.h"

@@ -1,7 +1,7 @@
 #include "study_outcome.h"
 
-#include "abbe/study/summary.h"
-#include "abbe/study/trust.h"
+#include "abbe/study/identification/trust.h"
+#include "abbe/study/report/summary.h"
 #include "exit_code.h"
 #include "messages.h"
 

@@ -12,7 +12,7 @@
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/run_study.h"
-#include "abbe/study/verified_readings.h"
+#include "abbe/study/verification/verified_readings.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
 #include "progress.h"

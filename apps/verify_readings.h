@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "abbe/study/verification.h"
+#include "abbe/study/verification/verification.h"
 
 namespace abbe {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "abbe/formats/text/input_error.h"
-#include "abbe/study/imported_file.h"
+#include "abbe/study/imports/imported_file.h"
 #include "fuzz_machine_data.h"
 
 namespace {

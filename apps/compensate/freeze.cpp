@@ -12,7 +12,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/study/frozen_errors.h"
+#include "abbe/study/compensation/frozen_errors.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "errors_for_use.h"

@@ -2,7 +2,7 @@
 
 #include "abbe/formats/machine/axis_option.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/study/program_settings.h"
+#include "abbe/study/compensation/program_settings.h"
 
 namespace abbe {
 namespace {

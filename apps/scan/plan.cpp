@@ -12,7 +12,7 @@
 #include "abbe/formats/text/json_text.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/study/planned_scan.h"
+#include "abbe/study/planning/planned_scan.h"
 #include "command.h"
 #include "exit_code.h"
 #include "machine_options.h"

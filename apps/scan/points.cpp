@@ -7,7 +7,7 @@
 
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/study/scanned_points.h"
+#include "abbe/study/scans/scanned_points.h"
 #include "column_options.h"
 #include "command.h"
 #include "errors_for_use.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/study/test_piece_sizes.h"
+#include "abbe/study/scans/test_piece_sizes.h"
 
 namespace abbe {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "abbe/machine/axis_unit.h"
-#include "abbe/study/report_data.h"
+#include "abbe/study/report/report_data.h"
 #include "abbe/verify/error_map.h"
 
 namespace abbe {

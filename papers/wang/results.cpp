@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/report/evaluations/statistics_json.h"
-#include "abbe/study/summary.h"
+#include "abbe/study/report/summary.h"
 #include "progress.h"
 #include "wang/tables.h"
 

@@ -11,7 +11,7 @@
 #include "abbe/formats/machine/map_file.h"
 #include "abbe/formats/readings/indication_file.h"
 #include "abbe/report/evaluations/machine_json.h"
-#include "abbe/study/report_data.h"
+#include "abbe/study/report/report_data.h"
 #include "wang/integrated.h"
 #include "wang/results.h"
 #include "wang/tables.h"

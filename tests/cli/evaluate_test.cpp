@@ -110,6 +110,16 @@ TEST_F(Evaluate, UncertaintyOfTheOtherKindOfAxisIsRefused) {
   EXPECT_EQ(result["figures"]["E"]["verdict"], "within, not proven");
 }
 
+TEST_F(Evaluate, AFigureThatNoStatedContributionAffectsHasNoUncertaintyOfZero) {
+  const std::vector<std::string> words{"positioning", examples + "linear.csv", "--instrument-um",
+                                       "0.5",         "--tolerance",           "R_um=10"};
+  const nlohmann::json result = json(words);
+  EXPECT_GT(result["figures"]["E"]["expanded_uncertainty_um"].get<double>(), 0);
+  EXPECT_FALSE(result["figures"]["R"].contains("expanded_uncertainty_um"));
+  EXPECT_EQ(result["figures"]["R"]["verdict"], "within");
+  EXPECT_THAT(result["notes"].dump(), testing::HasSubstr("No stated contribution affects R, R+, R-, B, B_mean"));
+}
+
 TEST_F(Evaluate, DiagonalsShowTheSquarenessThatWasPutIn) {
   const nlohmann::json result = json({"diagonals", examples + "diagonals.csv"});
   ASSERT_EQ(result["diagonals"].size(), 4U);

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "abbe/formats/files/empty_folder_for_test.h"
+#include "abbe/study/report/unseen.h"
 #include "abbe/study/run_study.h"
-#include "abbe/study/unseen.h"
 
 namespace abbe {
 namespace {

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/study/report/summary.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/study_steps.h"
-#include "abbe/study/summary.h"
 #include "property/summing_processes.h"
 
 namespace abbe {

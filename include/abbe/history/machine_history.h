@@ -44,7 +44,7 @@
 #include <utility>
 #include <vector>
 
-#include "abbe/study/compared_campaigns.h"
+#include "abbe/study/comparison/compared_campaigns.h"
 
 namespace abbe {
 

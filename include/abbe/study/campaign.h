@@ -10,8 +10,8 @@
 #include "abbe/formats/study/study.h"
 #include "abbe/identify/trust/reading_facts.h"
 #include "abbe/instruments/instrument.h"
+#include "abbe/study/identification/unexplained_readings.h"
 #include "abbe/study/job_options.h"
-#include "abbe/study/unexplained_readings.h"
 
 namespace abbe {
 

@@ -7,7 +7,7 @@
 #include "abbe/identify/order_selection.h"
 #include "abbe/identify/problem.h"
 #include "abbe/study/campaign.h"
-#include "abbe/study/coverage.h"
+#include "abbe/study/report/coverage.h"
 
 namespace abbe {
 

@@ -45,10 +45,10 @@
 
 #include "abbe/formats/study/study_file.h"
 #include "abbe/geometry/stopped.h"
-#include "abbe/study/results.h"
+#include "abbe/study/identification/trust.h"
+#include "abbe/study/report/results.h"
+#include "abbe/study/report/study_text.h"
 #include "abbe/study/study_result.h"
-#include "abbe/study/study_text.h"
-#include "abbe/study/trust.h"
 
 namespace abbe {
 

@@ -13,7 +13,7 @@
 #include "abbe/report/customer/customer_report_file.h"
 #include "abbe/report/customer/printed_report.h"
 #include "abbe/report/words/evaluation_text.h"
-#include "abbe/study/customer_study.h"
+#include "abbe/study/customer/customer_study.h"
 #include "abbe/study/evaluations/customer_evaluation.h"
 #include "bindings/customer/customer_parts.h"
 #include "bindings/evaluate/outputs.h"

@@ -10,7 +10,7 @@
 #include "abbe/formats/text/json_text.h"
 #include "abbe/history/machine_history.h"
 #include "abbe/history/machine_trends.h"
-#include "abbe/study/summary.h"
+#include "abbe/study/report/summary.h"
 #include "bindings/evaluate/outputs.h"
 #include "bindings/history/dates.h"
 #include "bindings/history/trends.h"

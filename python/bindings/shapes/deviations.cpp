@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "abbe/report/words/registration_words.h"
-#include "abbe/study/scan_deviations.h"
-#include "abbe/study/scan_registration.h"
+#include "abbe/study/scans/scan_deviations.h"
+#include "abbe/study/scans/scan_registration.h"
 #include "bindings/arrays_of_each.h"
 #include "bindings/evaluate/report.h"
 #include "bindings/job.h"

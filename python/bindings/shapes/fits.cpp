@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "abbe/formats/shapes/ending.h"
-#include "abbe/study/fitted_points.h"
+#include "abbe/study/scans/fitted_points.h"
 #include "bindings/evaluate/report.h"
 #include "bindings/shapes/ideal_shapes.h"
 #include "bindings/shapes/shapes.h"

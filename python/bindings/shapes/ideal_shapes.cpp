@@ -10,7 +10,7 @@
 
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/study/fitted_points.h"
+#include "abbe/study/scans/fitted_points.h"
 #include "bindings/shapes/shapes.h"
 #include "bindings/use/arguments.h"
 

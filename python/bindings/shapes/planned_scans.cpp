@@ -12,7 +12,7 @@
 #include "abbe/formats/readings/scan_plan_file.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/study/planned_scan.h"
+#include "abbe/study/planning/planned_scan.h"
 #include "bindings/arrays_of_each.h"
 #include "bindings/evaluate/outputs.h"
 #include "bindings/job.h"

@@ -9,7 +9,7 @@
 #include "abbe/formats/machine/transform_file.h"
 #include "abbe/geometry/registration/feature_registration.h"
 #include "abbe/report/words/registration_words.h"
-#include "abbe/study/scan_registration.h"
+#include "abbe/study/scans/scan_registration.h"
 #include "bindings/evaluate/outputs.h"
 #include "bindings/job.h"
 #include "bindings/shapes/shapes.h"

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/instruments/point_scan.h"
-#include "abbe/study/scanned_points.h"
+#include "abbe/study/scans/scanned_points.h"
 #include "bindings/evaluate/outputs.h"
 #include "bindings/job.h"
 #include "bindings/shapes/shapes.h"

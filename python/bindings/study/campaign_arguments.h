@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "abbe/study/compared_campaigns.h"
+#include "abbe/study/comparison/compared_campaigns.h"
 #include "bindings/study/study_objects.h"
 
 namespace abbe::python {

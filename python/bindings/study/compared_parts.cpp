@@ -6,7 +6,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "abbe/study/compared_campaigns.h"
+#include "abbe/study/comparison/compared_campaigns.h"
 #include "bindings/arrays.h"
 #include "bindings/tables.h"
 #include "bindings/use/arguments.h"

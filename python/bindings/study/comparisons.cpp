@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "abbe/study/compared_campaigns.h"
+#include "abbe/study/comparison/compared_campaigns.h"
 #include "bindings/evaluate/report.h"
 #include "bindings/job.h"
 #include "bindings/study/campaign_arguments.h"

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/machine/machine_file.h"
-#include "abbe/study/imported_file.h"
+#include "abbe/study/imports/imported_file.h"
 #include "bindings/evaluate/outputs.h"
 #include "bindings/evaluate/readings.h"
 #include "bindings/tables.h"

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/text/json_text.h"
-#include "abbe/study/plan_page.h"
-#include "abbe/study/plan_text.h"
+#include "abbe/study/planning/plan_page.h"
+#include "abbe/study/planning/plan_text.h"
 #include "bindings/arrays.h"
 #include "bindings/files.h"
 #include "bindings/study/study_objects.h"

@@ -1,4 +1,4 @@
-#include "abbe/study/results.h"
+#include "abbe/study/report/results.h"
 
 #include <fmt/format.h>
 #include <nanobind/eigen/dense.h>
@@ -16,10 +16,10 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/report.h"
-#include "abbe/study/report_data.h"
-#include "abbe/study/study_text.h"
-#include "abbe/study/summary.h"
-#include "abbe/study/trust.h"
+#include "abbe/study/identification/trust.h"
+#include "abbe/study/report/report_data.h"
+#include "abbe/study/report/study_text.h"
+#include "abbe/study/report/summary.h"
 #include "bindings/arrays.h"
 #include "bindings/files.h"
 #include "bindings/machine_errors.h"

@@ -8,7 +8,7 @@
 
 #include "abbe/formats/study/study.h"
 #include "abbe/instruments/instrument.h"
-#include "abbe/study/planning.h"
+#include "abbe/study/planning/planning.h"
 #include "abbe/study/study_result.h"
 #include "bindings/bindings.h"
 #include "bindings/machine_errors.h"

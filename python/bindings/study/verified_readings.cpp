@@ -1,4 +1,4 @@
-#include "abbe/study/verified_readings.h"
+#include "abbe/study/verification/verified_readings.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/map.h>

@@ -1,4 +1,4 @@
-#include "abbe/study/corrected_commands.h"
+#include "abbe/study/compensation/corrected_commands.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>

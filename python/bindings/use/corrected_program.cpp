@@ -1,4 +1,4 @@
-#include "abbe/study/corrected_program.h"
+#include "abbe/study/compensation/corrected_program.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>
@@ -9,7 +9,7 @@
 #include "abbe/formats/files/streamed_file.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/study/program_settings.h"
+#include "abbe/study/compensation/program_settings.h"
 #include "bindings/files.h"
 #include "bindings/job.h"
 #include "bindings/use/program_result.h"

@@ -8,7 +8,7 @@
 
 #include "abbe/formats/shapes/curve_file.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/study/test_piece_sizes.h"
+#include "abbe/study/scans/test_piece_sizes.h"
 #include "bindings/arrays_of_each.h"
 
 namespace abbe::python {

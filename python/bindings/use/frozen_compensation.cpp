@@ -10,7 +10,7 @@
 
 #include "abbe/formats/files/text_file.h"
 #include "abbe/runtime/abbe_runtime_states.h"
-#include "abbe/study/frozen_errors.h"
+#include "abbe/study/compensation/frozen_errors.h"
 #include "bindings/use/arguments.h"
 
 namespace abbe::python {

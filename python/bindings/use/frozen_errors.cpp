@@ -1,4 +1,4 @@
-#include "abbe/study/frozen_errors.h"
+#include "abbe/study/compensation/frozen_errors.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>

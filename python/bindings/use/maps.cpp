@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/machine/map_file.h"
-#include "abbe/study/errors_map.h"
+#include "abbe/study/compensation/errors_map.h"
 #include "bindings/files.h"
 #include "bindings/job.h"
 #include "bindings/states.h"

@@ -5,7 +5,7 @@
 
 #include "abbe/formats/files/file_name.h"
 #include "abbe/formats/machine/obstacle_option.h"
-#include "abbe/study/plan_text.h"
+#include "abbe/study/planning/plan_text.h"
 #include "bindings/study/study_objects.h"
 
 namespace abbe::python {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "abbe/study/planned_measurement.h"
+#include "abbe/study/planning/planned_measurement.h"
 #include "bindings/shapes/shapes.h"
 #include "bindings/use/arguments.h"
 

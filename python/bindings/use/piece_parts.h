@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/study/verification.h"
+#include "abbe/study/verification/verification.h"
 #include "bindings/use/arguments.h"
 
 namespace abbe::python {

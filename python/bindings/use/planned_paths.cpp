@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/study/planned_path.h"
+#include "abbe/study/compensation/planned_path.h"
 #include "bindings/arrays_of_each.h"
 #include "bindings/files.h"
 #include "bindings/use/curves.h"

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/study/planned_probing.h"
+#include "abbe/study/planning/planned_probing.h"
 #include "bindings/arrays_of_each.h"
 #include "bindings/evaluate/outputs.h"
 #include "bindings/use/measurement_request.h"

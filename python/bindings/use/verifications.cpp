@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/study/verification.h"
-#include "abbe/study/verification_page.h"
-#include "abbe/study/verification_text.h"
+#include "abbe/study/verification/verification.h"
+#include "abbe/study/verification/verification_page.h"
+#include "abbe/study/verification/verification_text.h"
 #include "bindings/files.h"
 #include "bindings/job.h"
 #include "bindings/use/map_parts.h"

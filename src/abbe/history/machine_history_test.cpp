@@ -15,7 +15,7 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/machine/chain.h"
-#include "abbe/study/campaigns_for_test.h"
+#include "abbe/study/comparison/campaigns_for_test.h"
 
 namespace abbe {
 namespace {

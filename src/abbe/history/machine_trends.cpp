@@ -8,7 +8,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/history/trend_report.h"
 #include "abbe/history/trend_states.h"
-#include "abbe/study/compared_campaigns.h"
+#include "abbe/study/comparison/compared_campaigns.h"
 
 namespace abbe {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "abbe/formats/text/message_of.h"
 #include "abbe/report/words/evaluation_text.h"
-#include "abbe/study/campaigns_for_test.h"
+#include "abbe/study/comparison/campaigns_for_test.h"
 
 namespace abbe {
 namespace {

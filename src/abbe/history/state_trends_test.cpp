@@ -13,7 +13,7 @@
 #include "abbe/history/sqlite_database.h"
 #include "abbe/report/pages/evaluation_files.h"
 #include "abbe/report/words/evaluation_text.h"
-#include "abbe/study/campaigns_for_test.h"
+#include "abbe/study/comparison/campaigns_for_test.h"
 
 namespace abbe {
 namespace {

@@ -9,9 +9,9 @@
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/text/input_error.h"
-#include "abbe/study/setup_drifts.h"
-#include "abbe/study/simulated_setup.h"
-#include "abbe/study/streamed_identification.h"
+#include "abbe/study/identification/setup_drifts.h"
+#include "abbe/study/identification/simulated_setup.h"
+#include "abbe/study/identification/streamed_identification.h"
 
 namespace abbe {
 namespace {

@@ -3,7 +3,7 @@
 // Internal to study: states of machines that are described more than once.
 #include <vector>
 
-#include "abbe/study/compared_campaigns.h"
+#include "abbe/study/comparison/compared_campaigns.h"
 
 namespace abbe {
 

@@ -15,9 +15,9 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/message_of.h"
-#include "abbe/study/errors_map.h"
-#include "abbe/study/scanned_points.h"
-#include "abbe/study/verification.h"
+#include "abbe/study/compensation/errors_map.h"
+#include "abbe/study/scans/scanned_points.h"
+#include "abbe/study/verification/verification.h"
 
 namespace abbe {
 namespace {

@@ -12,11 +12,11 @@
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/decompositions.h"
-#include "abbe/study/drift_words.h"
+#include "abbe/study/identification/drift_words.h"
+#include "abbe/study/identification/setup_drifts.h"
+#include "abbe/study/report/summary.h"
 #include "abbe/study/run_study.h"
-#include "abbe/study/setup_drifts.h"
 #include "abbe/study/study_steps.h"
-#include "abbe/study/summary.h"
 
 namespace abbe {
 namespace {

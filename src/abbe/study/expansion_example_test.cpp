@@ -9,10 +9,10 @@
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/study/study_file.h"
-#include "abbe/study/corrected_commands.h"
-#include "abbe/study/identified_expansions.h"
+#include "abbe/study/compensation/corrected_commands.h"
+#include "abbe/study/identification/identified_expansions.h"
+#include "abbe/study/identification/trust.h"
 #include "abbe/study/run_study.h"
-#include "abbe/study/trust.h"
 
 namespace abbe {
 namespace {

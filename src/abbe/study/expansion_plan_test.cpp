@@ -6,7 +6,7 @@
 
 #include "abbe/formats/files/empty_folder_for_test.h"
 #include "abbe/formats/study/study_file.h"
-#include "abbe/study/planning.h"
+#include "abbe/study/planning/planning.h"
 
 namespace abbe {
 namespace {

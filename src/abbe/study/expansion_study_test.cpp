@@ -16,11 +16,11 @@
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/identify/identify.h"
-#include "abbe/study/found_values.h"
+#include "abbe/study/identification/trust.h"
+#include "abbe/study/report/found_values.h"
+#include "abbe/study/report/summary.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/study_steps.h"
-#include "abbe/study/summary.h"
-#include "abbe/study/trust.h"
 
 namespace abbe {
 namespace {

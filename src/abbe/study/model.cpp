@@ -10,9 +10,9 @@
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/input_error.h"
-#include "abbe/study/identified_expansions.h"
-#include "abbe/study/setup_drifts.h"
-#include "abbe/study/time_blocks.h"
+#include "abbe/study/identification/identified_expansions.h"
+#include "abbe/study/identification/setup_drifts.h"
+#include "abbe/study/identification/time_blocks.h"
 
 namespace abbe {
 namespace {

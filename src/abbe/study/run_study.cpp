@@ -1,7 +1,7 @@
 #include "abbe/study/run_study.h"
 
-#include "abbe/study/advice.h"
-#include "abbe/study/customer_study.h"
+#include "abbe/study/customer/customer_study.h"
+#include "abbe/study/report/advice.h"
 #include "abbe/study/study_steps.h"
 
 namespace abbe {

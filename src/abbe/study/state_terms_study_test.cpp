@@ -18,10 +18,10 @@
 #include "abbe/formats/text/message_of.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/time_blocks.h"
-#include "abbe/study/errors_map.h"
+#include "abbe/study/compensation/errors_map.h"
+#include "abbe/study/report/summary.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/study_steps.h"
-#include "abbe/study/summary.h"
 
 namespace abbe {
 namespace {

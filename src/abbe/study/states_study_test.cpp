@@ -14,9 +14,9 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/message_of.h"
-#include "abbe/study/customer_study.h"
+#include "abbe/study/customer/customer_study.h"
+#include "abbe/study/identification/trust.h"
 #include "abbe/study/run_study.h"
-#include "abbe/study/trust.h"
 
 namespace abbe {
 namespace {

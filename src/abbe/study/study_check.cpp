@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/text/list_text.h"
-#include "abbe/study/customer_study.h"
+#include "abbe/study/customer/customer_study.h"
 
 namespace abbe {
 

@@ -34,7 +34,9 @@ std::vector<EvaluationFigure> figures(const PositioningEvaluation& e, bool rotar
     const std::size_t f = all.size();
     all.push_back(report_figure(symbol, name, values[f], rotary));
     if (!stated || !values[f].is_evaluated()) return;
-    all.back().uncertainty = correction == nullptr ? uncertainty : std::hypot(uncertainty, correction->expanded[f]);
+    // None of what was stated affects it: that is no uncertainty of 0.
+    const double whole = correction == nullptr ? uncertainty : std::hypot(uncertainty, correction->expanded[f]);
+    if (whole > 0) all.back().uncertainty = whole;
   };
   add("A", "bidirectional accuracy", v.accuracy);
   add("A+", "unidirectional accuracy, positive approach", v.accuracy);
@@ -194,6 +196,21 @@ void add_contributions(const PositioningUncertainty* uncertainty, const Position
   report.details["uncertainty_contributions"] = std::move(contributions);
 }
 
+/// Says which figures have no uncertainty, where others have one.
+void add_unknown_uncertainties(bool rotary, EvaluationReport& report) {
+  std::string without;
+  bool any = false;
+  for (const EvaluationFigure& figure : report.figures) {
+    any = any || figure.uncertainty;
+    if (figure.value && !figure.uncertainty) without += (without.empty() ? "" : ", ") + figure.symbol;
+  }
+  if (!any || without.empty()) return;
+  report.notes.push_back(
+      fmt::format("No stated contribution affects {}: their uncertainty is not known. The range of the indication at "
+                  "rest does (--environment-{}).",
+                  without, rotary ? "arcsec" : "um"));
+}
+
 }  // namespace
 
 EvaluationReport positioning_report(const PositioningEvaluation& evaluation, bool rotary, const std::string& file,
@@ -214,6 +231,7 @@ EvaluationReport positioning_report(const PositioningEvaluation& evaluation, boo
                                  : fmt::format("{} to {}", evaluation.fewest_runs, evaluation.most_runs)}};
   report.figures = figures(evaluation, rotary, uncertainty, correction);
   report.notes = positioning_notes(evaluation, rotary);
+  add_unknown_uncertainties(rotary, report);
   report.tables.push_back(targets_table(evaluation, rotary));
   report.plots.push_back({"plot", "", positioning_plot(evaluation, rotary, report.title)});
   report.details["targets"] = targets_json(evaluation, rotary);

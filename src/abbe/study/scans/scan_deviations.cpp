@@ -1,0 +1,121 @@
+#include "abbe/study/scans/scan_deviations.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/drawings/deviation_colours.h"
+#include "abbe/report/drawings/surface_picture.h"
+#include "abbe/report/evaluations/deviation_report.h"
+#include "abbe/report/words/evaluation_text.h"
+#include "abbe/study/scans/deviation_steps.h"
+#include "abbe/study/scans/scan_of_part.h"
+
+namespace abbe {
+
+void check_deviation_request(const ScanDeviationsRequest& request) {
+  if (request.tolerance && request.tolerance->lower_mm > request.tolerance->upper_mm) {
+    throw InputError({.field = "--lower-um"}, "lies above --upper-um", "a band from lower to upper");
+  }
+  const std::string& status = request.pose.status;
+  if (status.empty() || status == "ok" || status == "ambiguous" || status == "undetermined") return;
+  throw InputError({.file = request.transform_file, .field = "status"},
+                   fmt::format("the registration that wrote this transform says {}", status),
+                   "the transform of a registration that found a pose (ok, ambiguous or undetermined)");
+}
+
+SurfaceFaces faces_of_part(const ScanDeviationsRequest& request) {
+  switch (request.faces) {
+    case DeviationFaces::none:
+      return {};
+    case DeviationFaces::by_edges:
+      return surface_faces(request.part.mesh, request.crease, request.threads);
+    case DeviationFaces::of_file:
+      break;
+  }
+  if (request.part.faces == 0) {
+    throw InputError({.file = request.part_file}, "the file states no faces",
+                     "a STEP file, or an OBJ file with o, g or usemtl; --faces-deg finds faces by their edges");
+  }
+  return stated_faces(request.part.mesh, request.part.face_of_triangle, request.part.faces);
+}
+
+void note_scan_elsewhere(const MeshFile& part, double middle_mm, ScanDeviations& result) {
+  constexpr double kShareOfDiagonal = 0.1;
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index i = 0; i < part.mesh.size(); ++i) {
+    for (int corner = 0; corner < 3; ++corner) box.extend(part.mesh.corner(i, corner));
+  }
+  const double diagonal = box.diagonal().norm();
+  result.elsewhere = middle_mm > kShareOfDiagonal * diagonal;
+  if (!result.elsewhere) return;
+  result.report.notes.insert(
+      result.report.notes.begin(),
+      fmt::format("The scan is not where the part is: half of its points are farther than {:.4g} mm away, and the part "
+                  "measures {:.4g} mm from corner to corner. Register the scan first (abbe register).",
+                  middle_mm, diagonal));
+}
+
+DeviationRequest asked_of_report(const ScanDeviationsRequest& request) {
+  DeviationRequest asked{.scan = request.scan_file,
+                         .part = request.part_file,
+                         .transform = request.transform_file,
+                         .status = request.pose.status,
+                         .tolerance = request.tolerance,
+                         .largest_mm = request.largest_mm,
+                         .colour_mm = request.colour_mm};
+  if (request.faces == DeviationFaces::of_file) asked.face_names = request.part.face_names;
+  return asked;
+}
+
+namespace {
+
+/// Half of the amounts are larger.
+double middle_amount(std::vector<double> distance) {
+  for (double& d : distance) d = std::abs(d);
+  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+  std::nth_element(distance.begin(), middle, distance.end());
+  return *middle;
+}
+
+}  // namespace
+
+ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::stop_token& stop) {
+  check_deviation_request(request);
+  check_scan_and_part(request.scan, request.scan_file, request.part, request.part_file);
+  const MeshFile& part = request.part;
+  const ClosestPointFinder surface(part.mesh, request.threads);
+  stop_if_asked(stop);
+  ScanDeviations result;
+  result.compared = compare_scan(surface, moved_cloud(request.scan.cloud, request.pose.transform).points,
+                                 {.tolerance = request.tolerance,
+                                  .largest_mm = request.largest_mm,
+                                  .faces = faces_of_part(request),
+                                  .threads = request.threads,
+                                  .stop = stop});
+  const DeviationRequest asked = asked_of_report(request);
+  result.report = deviation_report(asked, request.scan, part, result.compared);
+  if (result.has_points()) note_scan_elsewhere(part, middle_amount(result.compared.counted_mm), result);
+  apply_tolerances(request.tolerances, result.report);
+  result.colour_mm = deviation_colour_range(asked, result.compared);
+  if (request.page) {
+    stop_if_asked(stop);
+    result.report.page = deviation_page(part.mesh, result.compared.closest, result.compared.deviation, result.colour_mm,
+                                        request.threads);
+  }
+  return result;
+}
+
+std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result) {
+  const ScanComparison& compared = result.compared;
+  return {{"deviation.csv", point_cloud_csv({compared.counted_points, {}}, compared.counted_mm)},
+          {"deviation.ply", ply_bytes({.points = compared.counted_points,
+                                       .colours = deviation_colours(compared.counted_mm, result.colour_mm),
+                                       .deviation = compared.counted_mm})}};
+}
+
+}  // namespace abbe

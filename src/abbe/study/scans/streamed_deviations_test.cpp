@@ -1,0 +1,222 @@
+#include "abbe/study/scans/streamed_deviations.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "abbe/formats/files/checkpoint.h"
+#include "abbe/formats/files/unfinished_output.h"
+#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/text/message_of.h"
+#include "abbe/geometry/angle_units.h"
+#include "abbe/report/evaluations/evaluation_report.h"
+#include "abbe/report/words/evaluation_text.h"
+
+namespace abbe {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class StreamedDeviations : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string examples = ABBE_SOURCE_DIR "/examples/scan/";
+    folder_ = fs::path(testing::TempDir()) / ("abbe_streamed_" + std::to_string(::getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    cloud_ = read_point_cloud(examples + "bracket-scan.csv").cloud;
+    request_.part_file = "bracket.stl";
+    request_.transform_file = "bracket-transform.csv";
+    request_.part = read_mesh(examples + "bracket.stl");
+    request_.pose = read_transform_file(examples + "bracket-transform.csv");
+    request_.largest_mm = 0.3;
+    request_.tolerance = DeviationTolerance{-0.02, 0.03};
+    request_.faces = DeviationFaces::by_edges;
+    request_.crease = 30 * kDegree;
+    request_.page = true;
+    options_.above = 100;
+    options_.block = 300;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& contents) const {
+    std::ofstream(folder_ / name, std::ios::binary) << contents;
+    return (folder_ / name).string();
+  }
+  std::string ply() const { return write("scan.ply", ply_bytes({.points = cloud_.points})); }
+  std::string xyz() const {
+    std::string text = point_cloud_csv(cloud_);
+    text.erase(0, text.find('\n') + 1);
+    for (char& c : text) c = c == ',' ? ' ' : c;
+    return write("scan.xyz", text);
+  }
+  std::string pcd(std::size_t without_coordinates) const {
+    const auto n = static_cast<std::size_t>(cloud_.size()) + without_coordinates;
+    std::ostringstream text;
+    text << "VERSION .7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << n << "\nHEIGHT 1\nPOINTS " << n
+         << "\nDATA binary\n";
+    std::string bytes = text.str();
+    const std::vector<double> none(3 * without_coordinates, std::nan(""));
+    bytes.append(reinterpret_cast<const char*>(none.data()), none.size() * sizeof(double));
+    bytes.append(reinterpret_cast<const char*>(cloud_.points.data()),
+                 static_cast<std::size_t>(cloud_.points.size()) * sizeof(double));
+    return write("scan.pcd", bytes);
+  }
+
+  ScanDeviations in_blocks(const std::string& file, const JobOptions& job = {}) {
+    request_.scan_file = file;
+    return deviations_of_file(request_, {}, options_, job);
+  }
+  ScanDeviations as_a_whole(const std::string& file) {
+    request_.scan_file = file;
+    request_.scan = read_point_cloud(file);
+    return find_deviations(request_);
+  }
+  static std::string bytes_of(const ScanDeviations& result) {
+    std::string text = evaluation_json(result.report).dump() + result.report.page.dump();
+    for (const auto& [name, contents] : deviation_files(result)) text += name + contents;
+    return text;
+  }
+
+  fs::path folder_;
+  PointCloud cloud_;
+  ScanDeviationsRequest request_;
+  StreamingOptions options_;
+};
+
+TEST_F(StreamedDeviations, AreThoseOfTheScanInMemoryInEveryFormat) {
+  for (const std::string& file : {ply(), xyz(), write("scan.csv", point_cloud_csv(cloud_)), pcd(3)}) {
+    const ScanDeviations all = as_a_whole(file), streamed = in_blocks(file);
+    ASSERT_TRUE(is_read_in_blocks(file, options_.above)) << file;
+    const DeviationStatistics &a = all.compared.deviation.all, &b = streamed.compared.deviation.all;
+    EXPECT_EQ(a.sample.count, b.sample.count) << file;
+    EXPECT_EQ(all.compared.deviation.too_far, streamed.compared.deviation.too_far);
+    EXPECT_NEAR(a.sample.mean, b.sample.mean, 1e-15);
+    EXPECT_NEAR(a.sample.deviation, b.sample.deviation, 1e-15);
+    EXPECT_NEAR(a.sample.rms, b.sample.rms, 1e-15);
+    EXPECT_NEAR(a.rms_about_mean, b.rms_about_mean, 1e-15);
+    EXPECT_EQ(a.sample.minimum, b.sample.minimum);
+    EXPECT_EQ(a.sample.maximum, b.sample.maximum);
+    EXPECT_EQ(a.within, b.within);
+    const auto& bounds = streamed.report.details["percentile_error_at_most_um"];
+    const auto near = [&](double x, double y, const char* name) {
+      const double bound = 1e-3 * bounds.at(name).get<double>();
+      EXPECT_LE(std::abs(x - y), bound * (1 + 1e-9)) << name;
+      EXPECT_LT(bound, std::max(1e-8, 1e-4 * std::abs(x))) << name;
+    };
+    near(a.p5, b.p5, "p5");
+    near(a.p25, b.p25, "p25");
+    near(a.sample.median, b.sample.median, "median");
+    near(a.p75, b.p75, "p75");
+    near(a.sample.p95, b.sample.p95, "p95");
+    ASSERT_EQ(all.compared.deviation.regions.size(), streamed.compared.deviation.regions.size());
+    for (std::size_t i = 0; i < all.compared.deviation.regions.size(); ++i) {
+      const SampleStatistics &c = all.compared.deviation.regions[i].sample,
+                             &d = streamed.compared.deviation.regions[i].sample;
+      EXPECT_EQ(c.count, d.count);
+      EXPECT_NEAR(c.mean, d.mean, 1e-15);
+      EXPECT_NEAR(c.deviation, d.deviation, 1e-15);
+    }
+    // All points are fewer than are shown.
+    EXPECT_EQ(all.compared.counted_mm, streamed.compared.counted_mm);
+    EXPECT_EQ(all.colour_mm, streamed.colour_mm);
+  }
+}
+
+TEST_F(StreamedDeviations, HaveTheSameBytesForAllThreadsAndBlocks) {
+  const std::string file = xyz();
+  options_.shown = 150;
+  const std::string expected = bytes_of(in_blocks(file));
+  EXPECT_LT(in_blocks(file).compared.counted_mm.size(), 400U);
+  for (const std::size_t block : {std::size_t{1}, std::size_t{77}, std::size_t{100000}}) {
+    options_.block = block;
+    for (const int threads : {1, 2}) {
+      request_.threads = threads;
+      EXPECT_EQ(bytes_of(in_blocks(file)), expected) << block << " " << threads;
+    }
+  }
+}
+
+TEST_F(StreamedDeviations, GoOnAfterAKillWithTheSameBytes) {
+  const std::string file = ply();
+  options_.shown = 150;
+  const std::string expected = bytes_of(in_blocks(file));
+  options_.output = (folder_ / "out").string();
+  options_.checkpoint_seconds = 0;
+  request_.threads = 1;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    JobOptions job;
+    job.progress = [](std::size_t done, std::size_t total) {
+      if (done > total / 2) ::kill(::getpid(), SIGKILL);
+    };
+    in_blocks(file, job);
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const fs::path left = unfinished_name(options_.output);
+  ASSERT_GT(fs::file_size(left), 100U);
+  // Other options are refused, and the checkpoint stays.
+  request_.largest_mm = 0.2;
+  EXPECT_THAT(message_of([&] { in_blocks(file); }), HasSubstr("is the checkpoint of another job: it has 'options: "));
+  request_.largest_mm = 0.3;
+  std::vector<std::string> told;
+  options_.tell = [&](const std::string& text) { told.push_back(text); };
+  const ScanDeviations result = in_blocks(file);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_THAT(told[0], HasSubstr("goes on behind point "));
+  EXPECT_EQ(bytes_of(result), expected);
+  // While it works nobody else may.
+  EXPECT_THAT(message_of([&] { in_blocks(file); }), HasSubstr("another process works on this output"));
+  result.unfinished->remove();
+  EXPECT_FALSE(fs::exists(left));
+}
+
+TEST_F(StreamedDeviations, StopWithACheckpoint) {
+  options_.output = (folder_ / "out").string();
+  std::stop_source source;
+  JobOptions job;
+  job.stop = source.get_token();
+  job.progress = [&](std::size_t, std::size_t) { source.request_stop(); };
+  EXPECT_THROW(in_blocks(ply(), job), Stopped);
+  EXPECT_GT(fs::file_size(unfinished_name(options_.output)), 100U);
+}
+
+TEST_F(StreamedDeviations, SayWhatIsWrongWithTheFile) {
+  const std::string file = ply();
+  JobOptions job;
+  job.progress = [&](std::size_t, std::size_t) { std::ofstream(file, std::ios::app) << "more"; };
+  EXPECT_THAT(message_of([&] { in_blocks(file, job); }), HasSubstr("was changed while it was read"));
+  const std::string whole = ply_bytes({.points = cloud_.points});
+  const std::string cut = write("cut.ply", whole.substr(0, whole.size() - 5));
+  EXPECT_THAT(message_of([&] { in_blocks(cut); }), HasSubstr("are stated, but only"));
+  PointCloud broken = cloud_;
+  broken.points(1, 7) = std::nan("");
+  const std::string nan = write("nan.ply", ply_bytes({.points = broken.points}));
+  EXPECT_THAT(message_of([&] { in_blocks(nan); }), HasSubstr("vertex 7: not a finite number"));
+  const std::string text = write("bad.xyz", "1 2 3\n4 5 6\n7 x 9\n" + std::string(6000, '\n'));
+  EXPECT_THAT(message_of([&] { in_blocks(text); }), HasSubstr("bad.xyz:3:3: y: 'x' is not a number"));
+  options_.above = 0;
+  const std::string empty = write("empty.csv", "x_mm,y_mm,z_mm\n");
+  EXPECT_THAT(message_of([&] { in_blocks(empty); }), HasSubstr("there are no rows below the header"));
+  const std::string ascii = write("ascii.ply",
+                                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                                  "property float y\nproperty float z\nend_header\n1 2 3\n");
+  EXPECT_THAT(message_of([&] { in_blocks(ascii); }), HasSubstr("which is read as a whole"));
+}
+
+}  // namespace
+}  // namespace abbe
