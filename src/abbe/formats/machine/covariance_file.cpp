@@ -8,6 +8,7 @@
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/text/csv_header.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/list_text.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/decompositions.h"
 
@@ -96,7 +97,7 @@ Eigen::MatrixXd parse_covariance(std::string_view text, const std::string& file,
     const auto row = static_cast<std::size_t>(i);
     const std::vector<std::string> fields = next_fields(text, at, line, file);
     if (fields.size() != header.size()) {
-      throw InputError({file, line, 0, names[row]}, fmt::format("the row has {} fields", fields.size()),
+      throw InputError({file, line, 0, names[row]}, "the row has " + counted(fields.size(), "field", "fields"),
                        fmt::format("{} as in the header", header.size()));
     }
     if (fields[0] != names[row]) refuse_name(fields[0], names[row]);

@@ -11,6 +11,7 @@
 #include "abbe/formats/text/csv_rows.h"
 #include "abbe/formats/text/decimal_text.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/list_text.h"
 #include "abbe/formats/text/text_blocks.h"
 #include "abbe/geometry/parallel_blocks.h"
 
@@ -154,7 +155,7 @@ class RowReader {
   bool refuse_length(std::string_view line, std::size_t at_least) {
     const std::size_t fields =
         at_least > targets_.size() ? 1 + static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) : at_least;
-    return refuse(line.data(), "", fmt::format("the row has {} fields", fields),
+    return refuse(line.data(), "", "the row has " + counted(fields, "field", "fields"),
                   fmt::format("{} as in the header", targets_.size()));
   }
 

@@ -109,7 +109,7 @@ TEST(CsvReader, RefusesFieldsThatAreNoNumbersOfTheUnit) {
 }
 
 TEST(CsvReader, RefusesRowsOfTheWrongLengthAndOpenQuotes) {
-  EXPECT_EQ(message_of_csv("X_mm,C_deg\n1\n"), "m.csv:2:1: the row has 1 fields; expected 2 as in the header");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n1\n"), "m.csv:2:1: the row has 1 field; expected 2 as in the header");
   EXPECT_EQ(message_of_csv("X_mm,C_deg\n1,5,2,5\n"), "m.csv:2:1: the row has 4 fields; expected 2 as in the header");
   EXPECT_EQ(message_of_csv("X_mm,C_deg\n1,2,\n"), "m.csv:2:1: the row has 3 fields; expected 2 as in the header");
   EXPECT_EQ(message_of_csv("X_mm,C_deg,station\n1,2,\"a\n\"\n"),

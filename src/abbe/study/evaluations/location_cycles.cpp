@@ -168,7 +168,9 @@ LocationErrorsOverTime location_errors_over_time(const Study& study, const Campa
     result.left_out.push_back(fmt::format("The cycle that begins after {:.4g} min is left out: {}.", after / 60, why));
   }
   if (result.cycles.size() >= 2) return result;
-  throw InputError({.file = file}, "fewer than two cycles determine the location errors. " + result.left_out.front(),
+  std::string first = result.left_out.front();
+  first.pop_back();
+  throw InputError({.file = file}, "fewer than two cycles determine the location errors. " + first,
                    "in every cycle all poses that the study needs; --cycle-min and --pause-min say what a cycle is");
 }
 
