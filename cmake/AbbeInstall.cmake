@@ -18,7 +18,9 @@ if(TARGET abbe-mpi)
 endif()
 # The examples: those of the help, and what `abbe reproduce` reads. The closed loop and the thermal day are scripts of the
 # source tree.
-install(DIRECTORY examples DESTINATION ${abbe_data} COMPONENT data PATTERN closed_loop EXCLUDE PATTERN thermal_day EXCLUDE)
+set(abbe_program_permissions OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+install(DIRECTORY examples DESTINATION ${abbe_data} COMPONENT data PATTERN closed_loop EXCLUDE PATTERN thermal_day EXCLUDE
+  REGEX "/fleet/(submit|fleet\\.sbatch|fleet\\.py)$" PERMISSIONS ${abbe_program_permissions})
 # The published readings that `abbe reproduce` recomputes.
 install(DIRECTORY tests/golden/aguado tests/golden/liu tests/golden/ma tests/golden/yin DESTINATION ${abbe_data}/golden
   COMPONENT data FILES_MATCHING PATTERN "*.csv" PATTERN "*.json")

@@ -95,7 +95,7 @@ set(CPACK_DEBIAN_MODULE_PACKAGE_SECTION electronics)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
   "libeigen3-dev (>= 3.4), libfmt-dev (>= 9), libhwy-dev (>= 1.0), libtomlplusplus-dev (>= 3), nlohmann-json3-dev (>= 3.11), zlib1g-dev, libexpat1-dev (>= 2.5), libsqlite3-dev (>= 3.40)")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS abbe)
-set(CPACK_DEBIAN_MODULE_PACKAGE_DEPENDS "linuxcnc-uspace (>= 2.9~), linuxcnc-uspace (<< 2.10~)")
+set(CPACK_DEBIAN_MODULE_PACKAGE_DEPENDS "linuxcnc-uspace (>= 2.9~), linuxcnc-uspace (<< 2.10~), python3")
 set(CPACK_DEBIAN_MODULE_PACKAGE_RECOMMENDS abbe)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "libabbe-dev, abbe-linuxcnc, chromium | weasyprint, fonts-noto-cjk")
 include(CPack)

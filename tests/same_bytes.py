@@ -87,7 +87,7 @@ def examples(abbe, words=()):
     """Example lines of a help text and of those of its subcommands: lists of commands that stand in one text."""
     text = help_of(abbe, words)
     lines, below = [], False
-    for line in text.splitlines():
+    for line in re.sub(r"\s*\\\n\s+", " ", text).splitlines():
         below = below or line.startswith("Example")
         if below and line.startswith("  abbe "):
             lines.append(re.split(r"\s{3,}", line.strip())[0])
