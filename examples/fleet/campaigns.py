@@ -11,7 +11,7 @@ from typing import Any
 
 import abbe
 import numpy as np
-from machines import EXPANSION_UM_PER_M_K, FIRST_DAY, HALF_MM, TEMPERATURE_K, WEEK, SimulatedMachine
+from machines import EXPANSION_UM_PER_M_K, FIRST_DAY, TEMPERATURE_K, WEEK, SimulatedMachine
 
 RADIUS_MM = 150.0
 STRAIGHTNESS = ["EYX", "EZX", "EXY", "EZY", "EXZ", "EYZ"]
@@ -57,7 +57,6 @@ class Kind:
     first: int
     every: int
     followed: tuple[str, ...]
-    half_mm: dict[str, float]  # of the ranges of its error motions
 
     def days(self, weeks: int) -> list[int]:
         return list(range(self.first, 7 * weeks, self.every))
@@ -68,9 +67,9 @@ class Kind:
 
 KINDS = (
     Kind("ball-bar", BALL_BAR, 0, 7, ("EXX[P1]", "EYY[P1]", "EZZ[P1]", "EC0Y", "EA0Z", "EB0Z", "reversal_X",
-                                      "reversal_Y", "reversal_Z"), dict.fromkeys("XYZ", RADIUS_MM)),
+                                      "reversal_Y", "reversal_Z")),
     Kind("tracker", TRACKER, 2, 28, ("EXX[P1]", "EYY[P1]", "EZZ[P1]", "EC0Y", "EA0Z", "EB0Z",
-                                     *(f"{name}[P2]" for name in ("EXX", "EYY", "EZZ", *STRAIGHTNESS))), HALF_MM),
+                                     *(f"{name}[P2]" for name in ("EXX", "EYY", "EZZ", *STRAIGHTNESS)))),
 )
 
 
@@ -151,27 +150,44 @@ def add_missing(mill: abbe.Machine, kind: Kind, machine: SimulatedMachine, path:
 
 def scatter_covariance(kind: Kind) -> np.ndarray:
     """What varies between campaigns beside the noise: the temperature, which makes all scales longer together."""
-    per_mm = EXPANSION_UM_PER_M_K * TEMPERATURE_K * 1e-6
-    along = np.array([per_mm * kind.half_mm[name[2]] if name.endswith("[P1]") else 0 for name in kind.followed])
+    per_K = EXPANSION_UM_PER_M_K * TEMPERATURE_K * 1e-6
+    along = np.array([per_K if name.endswith("[P1]") else 0 for name in kind.followed])
     return np.outer(along, along)
 
 
 def drift_covariance(kind: Kind) -> np.ndarray:
-    """Normal drift in a day, as the maker of such machines states it, in mm^2 and rad^2."""
-    def per_day(name: str) -> float:
-        if name.endswith("[P1]"):
-            return 0.4e-6 * kind.half_mm[name[2]] / WEEK
-        return (0.4e-6 if name in ("EC0Y", "EA0Z", "EB0Z") else 0.04e-3) / WEEK
-    return np.diag([per_day(name) ** 2 for name in kind.followed])
+    """Normal drift in a day, as the maker of such machines states it, in mm^2 and rad^2; of scales in (mm/mm)^2."""
+    angles = ("EC0Y", "EA0Z", "EB0Z")
+    weekly = [0.4e-6 if name.endswith("[P1]") or name in angles else 0.04e-3 for name in kind.followed]
+    return np.diag(np.square(weekly) / WEEK ** 2)
+
+
+def half_ranges_mm(errors: abbe.Errors) -> dict[str, float]:
+    """Half the range of every error motion by name, from the text of the errors."""
+    found, name, start = {}, "", 0.0
+    for line in errors.text().splitlines():
+        key, _, value = line.partition(" = ")
+        if key == "name":
+            name = value.strip('"')
+        elif key == "from_mm":
+            start = float(value)
+        elif key == "to_mm":
+            found[name] = (float(value) - start) / 2
+    return found
 
 
 def followed_values(kind: Kind, campaigns: list[abbe.HistoryCampaign]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Days [n], values [n, p] and covariances [n, p, p] of the campaigns, from the history alone."""
+    """Days [n], values [n, p] and covariances [n, p, p] of the campaigns, from the history alone.
+
+    A coefficient P1 is the scale times half the range that was measured, which differs from axis to axis and from one
+    instrument to another. So the scale itself is followed, in mm/mm."""
     days, values, covariances = [], [], []
     for one in campaigns:
         errors = one.errors
+        half = half_ranges_mm(errors)
         at = [errors.names.index(name) for name in kind.followed]
+        factor = np.array([1 / half[name[:3]] if name.endswith("[P1]") else 1.0 for name in kind.followed])
         days.append(day_of(one.date))
-        values.append(errors.values_mm_rad[at])
-        covariances.append(errors.covariance[np.ix_(at, at)] + scatter_covariance(kind))
+        values.append(factor * errors.values_mm_rad[at])
+        covariances.append(np.outer(factor, factor) * errors.covariance[np.ix_(at, at)] + scatter_covariance(kind))
     return np.array(days), np.array(values), np.array(covariances)

@@ -84,7 +84,8 @@ def judge(settings: Settings, kind: Kind, history: abbe.History) -> dict[str, An
     found: dict[str, Any] = {
         "campaigns": len(campaigns), "days": sorted(set(days.tolist())),
         "lengths": [round(x, 6) for x in lengths.tolist()],
-        "limit": round(limit, 6), "square_sum": round(float((z * z).sum()), 6), "squares": int(z.size), "alarm": None}
+        "limit": round(limit, 6), "squares": [round(x, 6) for x in (z * z).sum(axis=0).tolist()],
+        "alarm": None}
     alarm = first_alarm(lengths, limit, len(kind.followed))
     if alarm:
         pair = abbe.compare([campaigns[alarm.before].errors, campaigns[alarm.campaign].errors]).pairs[0]
