@@ -11,7 +11,8 @@ from typing import Any
 
 import abbe
 import numpy as np
-from machines import EXPANSION_UM_PER_M_K, FIRST_DAY, HALF_MM, TEMPERATURE_K, WEEK, SimulatedMachine
+from machines import (EXPANSION_UM_PER_M_K, FIRST_DAY, MOVING, NAMES, TEMPERATURE_K, SimulatedMachine,
+                      errors_of)
 
 RADIUS_MM = 150.0
 STRAIGHTNESS = ["EYX", "EZX", "EXY", "EZY", "EXZ", "EYZ"]
@@ -57,7 +58,6 @@ class Kind:
     first: int
     every: int
     followed: tuple[str, ...]
-    half_mm: dict[str, float]  # of the ranges of its error motions
 
     def days(self, weeks: int) -> list[int]:
         return list(range(self.first, 7 * weeks, self.every))
@@ -68,9 +68,9 @@ class Kind:
 
 KINDS = (
     Kind("ball-bar", BALL_BAR, 0, 7, ("EXX[P1]", "EYY[P1]", "EZZ[P1]", "EC0Y", "EA0Z", "EB0Z", "reversal_X",
-                                      "reversal_Y", "reversal_Z"), dict.fromkeys("XYZ", RADIUS_MM)),
+                                      "reversal_Y", "reversal_Z")),
     Kind("tracker", TRACKER, 2, 28, ("EXX[P1]", "EYY[P1]", "EZZ[P1]", "EC0Y", "EA0Z", "EB0Z",
-                                     *(f"{name}[P2]" for name in ("EXX", "EYY", "EZZ", *STRAIGHTNESS))), HALF_MM),
+                                     *(f"{name}[P2]" for name in ("EXX", "EYY", "EZZ", *STRAIGHTNESS)))),
 )
 
 
@@ -90,14 +90,14 @@ def measured_only(study: dict[str, Any]) -> dict[str, Any]:
     return document
 
 
-def measure(mill: abbe.Machine, kind: Kind, machine: SimulatedMachine, day: int, seed: int) -> dict[str, abbe.Readings]:
+def measure(mill: abbe.Machine, kind: Kind, truth: abbe.Errors, seed: int) -> dict[str, abbe.Readings]:
     document = copy.deepcopy(kind.study)
     document["seed"] = seed
     rng = np.random.default_rng(seed)
     for setup in document["setup"]:
         if "drift" in setup:
             setup["drift"]["true"] = {f"{axis}_um": [float(rng.normal() * 2)] for axis in "xyz"}
-    return abbe.Study(mill, document).gather(truth=machine.errors(mill, day))
+    return abbe.Study(mill, document).gather(truth=truth)
 
 
 @dataclass
@@ -129,7 +129,7 @@ def add_missing(mill: abbe.Machine, kind: Kind, machine: SimulatedMachine, path:
         found = []
         for day in missing:
             begin = time.process_time()
-            readings = measure(mill, kind, machine, day, kind.seed(seed, machine.number, day))
+            readings = measure(mill, kind, machine.errors(mill, day), kind.seed(seed, machine.number, day))
             times.measure_s += time.process_time() - begin
             begin = time.process_time()
             result = study.run(readings, map=False, advice=False)
@@ -149,29 +149,67 @@ def add_missing(mill: abbe.Machine, kind: Kind, machine: SimulatedMachine, path:
     return history
 
 
-def scatter_covariance(kind: Kind) -> np.ndarray:
+def half_ranges_mm(errors: abbe.Errors) -> dict[str, float]:
+    """Half the range of every error motion by name, from the text of the errors."""
+    found, name, start = {}, "", 0.0
+    for line in errors.text().splitlines():
+        key, _, value = line.partition(" = ")
+        if key == "name":
+            name = value.strip('"')
+        elif key == "from_mm":
+            start = float(value)
+        elif key == "to_mm":
+            found[name] = (float(value) - start) / 2
+    return found
+
+
+def followed_of(kind: Kind, errors: abbe.Errors) -> tuple[np.ndarray, np.ndarray]:
+    """Values [p] that are followed, and their covariance.
+
+    A coefficient P1 is the scale times half the range that was measured, which differs from axis to axis and from one
+    instrument to another. So the scale itself is followed, in mm/mm."""
+    half = half_ranges_mm(errors)
+    at = [errors.names.index(name) for name in kind.followed]
+    factor = np.array([1 / half[name[:3]] if name.endswith("[P1]") else 1.0 for name in kind.followed])
+    return factor * errors.values_mm_rad[at], np.outer(factor, factor) * errors.covariance[np.ix_(at, at)]
+
+
+_responses: dict[str, np.ndarray] = {}
+
+
+def responses(mill: abbe.Machine, kind: Kind) -> np.ndarray:
+    """Change of the followed values by a unit of each error of MOVING, [p, errors], from simulated campaigns.
+
+    An instrument also sees errors that its study does not identify: to a ball bar a bend of Z about the middle of its
+    travel is a squareness. They drift too. Equal noise cancels in the differences."""
+    if kind.name not in _responses:
+        study = abbe.Study(mill, measured_only(kind.study), name=kind.name)
+
+        def found(values: dict[str, float]) -> np.ndarray:
+            readings = measure(mill, kind, errors_of(mill, values), seed=1)
+            return followed_of(kind, study.run(readings, map=False, advice=False).errors)[0]
+        size, start = 5.0, found({})
+        _responses[kind.name] = np.array([(found({name: size}) - start) / size for name in NAMES]).T
+    return _responses[kind.name]
+
+
+def scatter_covariance(mill: abbe.Machine, kind: Kind) -> np.ndarray:
     """What varies between campaigns beside the noise: the temperature, which makes all scales longer together."""
-    per_mm = EXPANSION_UM_PER_M_K * TEMPERATURE_K * 1e-6
-    along = np.array([per_mm * kind.half_mm[name[2]] if name.endswith("[P1]") else 0 for name in kind.followed])
+    longer = np.array([name.startswith("scale") for name in NAMES]) * EXPANSION_UM_PER_M_K * TEMPERATURE_K
+    along = responses(mill, kind) @ longer
     return np.outer(along, along)
 
 
-def drift_covariance(kind: Kind) -> np.ndarray:
-    """Normal drift in a day, as the maker of such machines states it, in mm^2 and rad^2."""
-    def per_day(name: str) -> float:
-        if name.endswith("[P1]"):
-            return 0.4e-6 * kind.half_mm[name[2]] / WEEK
-        return (0.4e-6 if name in ("EC0Y", "EA0Z", "EB0Z") else 0.04e-3) / WEEK
-    return np.diag([per_day(name) ** 2 for name in kind.followed])
+def drift_covariance(mill: abbe.Machine, kind: Kind) -> np.ndarray:
+    """Normal drift of the followed values in a day, as the maker of such machines states it of every error."""
+    root = responses(mill, kind) * [each[3] for each in MOVING]
+    return root @ root.T
 
 
-def followed_values(kind: Kind, campaigns: list[abbe.HistoryCampaign]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def followed_values(mill: abbe.Machine, kind: Kind,
+                    campaigns: list[abbe.HistoryCampaign]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Days [n], values [n, p] and covariances [n, p, p] of the campaigns, from the history alone."""
-    days, values, covariances = [], [], []
-    for one in campaigns:
-        errors = one.errors
-        at = [errors.names.index(name) for name in kind.followed]
-        days.append(day_of(one.date))
-        values.append(errors.values_mm_rad[at])
-        covariances.append(errors.covariance[np.ix_(at, at)] + scatter_covariance(kind))
-    return np.array(days), np.array(values), np.array(covariances)
+    found = [followed_of(kind, one.errors) for one in campaigns]
+    scatter = scatter_covariance(mill, kind)
+    return (np.array([day_of(one.date) for one in campaigns]), np.array([value for value, _ in found]),
+            np.array([covariance + scatter for _, covariance in found]))

@@ -24,7 +24,7 @@ sys.path.insert(0, str(HERE))
 
 from page import page_html  # noqa: E402
 from scoring import score_fleet  # noqa: E402
-from shards import Settings, claim, do_shard, gather, json_text, shard_path, write_atomically  # noqa: E402
+from shards import Settings, claim, do_shard, gather, json_text, rows_of, shard_path, write_atomically  # noqa: E402
 
 
 def shard_task(folder: str, settings: Settings, shard: int) -> int:
@@ -60,7 +60,7 @@ def run_with_dask(folder: Path, settings: Settings, workers: int, scheduler: str
 def write_page(folder: Path, settings: Settings, with_times: bool) -> None:
     rows = gather(folder, settings)
     truth = [row for shard in settings.shards()
-             for row in json.loads((folder / "truth" / shard_path(folder, shard).name).read_text())]
+             for row in rows_of(folder / "truth" / shard_path(folder, shard).name)]
     score = score_fleet(settings, rows, truth)
     times = []
     if with_times:

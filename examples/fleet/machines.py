@@ -35,6 +35,23 @@ class Event:
     size: float     # at once, or after 100 days of wear, in the unit of the error
 
 
+def errors_of(mill: abbe.Machine, values: dict[str, float]) -> abbe.Errors:
+    """Errors of the machine from values by name, in the units of MOVING; others are 0."""
+    now = dict.fromkeys(NAMES, 0.0) | values
+    errors = abbe.Errors(mill)
+    for name in SCALES:
+        axis = name[2]
+        errors.add_motion(name, "legendre",
+                          coefficients_um=[0, 1e-3 * HALF_MM[axis] * now[f"scale {axis}"], now[f"bend {name}"]])
+    for name in BENDS[:6]:
+        errors.add_motion(name, "legendre", coefficients_um=[0, 0, now[f"bend {name}"]])
+    for name in SQUARES:
+        errors.add_location(name, value_urad=now[name])
+    for axis in "XYZ":
+        errors.set_reversal(axis, value_um=now[f"reversal {axis}"])
+    return errors
+
+
 class SimulatedMachine:
     """One machine over its days: errors at a day, and its event. The same number and seed give the same machine."""
 
@@ -70,19 +87,7 @@ class SimulatedMachine:
 
     def errors(self, mill: abbe.Machine, day: int) -> abbe.Errors:
         """The same as errors of the machine, for the simulation of its readings."""
-        now = self.values(day)
-        errors = abbe.Errors(mill)
-        for name in SCALES:
-            axis = name[2]
-            errors.add_motion(name, "legendre",
-                              coefficients_um=[0, 1e-3 * HALF_MM[axis] * now[f"scale {axis}"], now[f"bend {name}"]])
-        for name in BENDS[:6]:
-            errors.add_motion(name, "legendre", coefficients_um=[0, 0, now[f"bend {name}"]])
-        for name in SQUARES:
-            errors.add_location(name, value_urad=now[name])
-        for axis in "XYZ":
-            errors.set_reversal(axis, value_um=now[f"reversal {axis}"])
-        return errors
+        return errors_of(mill, self.values(day))
 
     def truth(self) -> dict[str, object]:
         """What the score is counted against."""

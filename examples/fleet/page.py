@@ -145,12 +145,18 @@ def percent(share: float) -> str:
     return f"{100 * share:.2f}"
 
 
+def squares_words(name: str, one: dict[str, Any]) -> str:
+    least, *_, most = sorted(one["by_error"].items(), key=lambda each: each[1])
+    return (f"{name} {one['all']:.3f}, by error {least[1]:.2f} ({escape(least[0])}) to {most[1]:.2f} "
+            f"({escape(most[0])}) with a standard deviation of {one['standard_deviation']:.2f}")
+
+
 def page_html(settings: Settings, rows: list[dict[str, Any]], score: dict[str, Any],
               times: list[dict[str, Any]]) -> str:
     alarms = score["false_alarms"]
     squares = score["mean_square_of_innovations"]
     delays = [delay for one in score["events"].values() for delay in one["delays_days"]]
-    checked = "; ".join(f"{kind.name} {squares[kind.name]:.3f}" for kind in KINDS if squares[kind.name] is not None)
+    checked = "; ".join(squares_words(kind.name, squares[kind.name]) for kind in KINDS if squares[kind.name])
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="{POLICY}">

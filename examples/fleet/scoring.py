@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from statistics import median
 from typing import Any
 
-from campaigns import KINDS
+from campaigns import KINDS, Kind
 from control import binomial_interval, false_alarm
 from shards import Settings
 
@@ -25,6 +26,17 @@ def expected_share(settings: Settings) -> tuple[float, float]:
     each = [false_alarm(len(kind.followed), len(kind.days(settings.weeks)) - 1, settings.weight, settings.limit(kind))
             for kind in KINDS if len(kind.days(settings.weeks)) > 1]
     return max(each), sum(each)
+
+
+def mean_squares(kind: Kind, charts: list[dict[str, Any]]) -> dict[str, Any] | None:
+    """Of the innovations, by error and of all; each is 1 if drift, scatter and uncertainties are as stated. An error's
+    is that beside the errors before it. All together say less: one that is too large hides one that is too small."""
+    count = sum(len(one["lengths"]) for one in charts)
+    if count == 0:
+        return None
+    each = [sum(sums) / count for sums in zip(*(one["squares"] for one in charts))]
+    return {"all": sum(each) / len(each), "by_error": dict(zip(kind.followed, each)),
+            "standard_deviation": math.sqrt(2 / count)}
 
 
 def score_fleet(settings: Settings, rows: list[dict[str, Any]], truth: list[dict[str, Any]]) -> dict[str, Any]:
@@ -54,8 +66,6 @@ def score_fleet(settings: Settings, rows: list[dict[str, Any]], truth: list[dict
     for one in events.values():
         one["delays_days"].sort()
         one["median_days"] = median(one["delays_days"]) if one["delays_days"] else None
-    squares = {kind.name: tuple(sum(row[kind.name][key] for row in quiet) for key in ("square_sum", "squares"))
-               for kind in KINDS}
     return {
         "alarms": sum(alarm_of(row) is not None for row in rows), "before_event": before_event,
         "false_alarms": {"machines": len(false), "of": len(quiet), "share": len(false) / len(quiet) if quiet else 0,
@@ -63,7 +73,7 @@ def score_fleet(settings: Settings, rows: list[dict[str, Any]], truth: list[dict
                          "years": len(quiet) * settings.weeks / 52},
         "by_kind": {kind.name: {"machines": sum(row[kind.name]["alarm"] is not None for row in quiet),
                                 "limit": settings.limit(kind), "followed": len(kind.followed)} for kind in KINDS},
-        "mean_square_of_innovations": {name: total / count if count else None
-                                       for name, (total, count) in squares.items()},
+        "mean_square_of_innovations": {kind.name: mean_squares(kind, [row[kind.name] for row in quiet])
+                                       for kind in KINDS},
         "events": dict(sorted(events.items())),
     }

@@ -75,16 +75,17 @@ def shard_path(folder: Path, shard: int) -> Path:
     return folder / "shards" / f"shard-{shard:04}.json"
 
 
-def judge(settings: Settings, kind: Kind, history: abbe.History) -> dict[str, Any]:
+def judge(settings: Settings, mill: abbe.Machine, kind: Kind, history: abbe.History) -> dict[str, Any]:
     """The control chart of one history, and what changed at its first alarm. Nothing but the history is read."""
     campaigns = history.campaigns()
-    days, values, covariances = followed_values(kind, campaigns)
-    z = innovations(values, covariances, drift_covariance(kind), days)
+    days, values, covariances = followed_values(mill, kind, campaigns)
+    z = innovations(values, covariances, drift_covariance(mill, kind), days)
     lengths, limit = averages(z, settings.weight), settings.limit(kind)
     found: dict[str, Any] = {
         "campaigns": len(campaigns), "days": sorted(set(days.tolist())),
         "lengths": [round(x, 6) for x in lengths.tolist()],
-        "limit": round(limit, 6), "square_sum": round(float((z * z).sum()), 6), "squares": int(z.size), "alarm": None}
+        "limit": round(limit, 6), "squares": [round(x, 6) for x in (z * z).sum(axis=0).tolist()],
+        "alarm": None}
     alarm = first_alarm(lengths, limit, len(kind.followed))
     if alarm:
         pair = abbe.compare([campaigns[alarm.before].errors, campaigns[alarm.campaign].errors]).pairs[0]
@@ -119,7 +120,7 @@ def do_shard(folder: Path, settings: Settings, shard: int) -> int:
                 history_path.parent.mkdir(parents=True, exist_ok=True)
                 history = add_missing(mill, kind, machine, history_path, settings.weeks, settings.seed, times)
                 begin = time.process_time()
-                row[kind.name] = judge(settings, kind, history)
+                row[kind.name] = judge(settings, mill, kind, history)
                 times.judge_s += time.process_time() - begin
             rows.append(row)
     write_atomically(folder / "truth" / path.name, json_text(truth))  # for the score only
@@ -128,13 +129,23 @@ def do_shard(folder: Path, settings: Settings, shard: int) -> int:
     return times.campaigns
 
 
+def rows_of(path: Path) -> list[dict[str, Any]]:
+    """The rows of a file of a shard, or an exit that says which one is damaged and what to do."""
+    try:
+        rows = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise SystemExit(f"fleet: {path} cannot be read ({error}); remove shards/{path.name} and run the same command "
+                         "again: its campaigns are in the histories") from None
+    return list(rows)
+
+
 def gather(folder: Path, settings: Settings) -> list[dict[str, Any]]:
     """The rows of all machines, each once, or an exit that names what is missing or twice."""
     missing = [shard for shard in settings.shards() if not shard_path(folder, shard).exists()]
     if missing:
         raise SystemExit(f"fleet: {len(missing)} of {len(settings.shards())} shards are not done, the first is "
                          f"{missing[0]}; run the same command again")
-    rows = [row for shard in settings.shards() for row in json.loads(shard_path(folder, shard).read_text())]
+    rows = [row for shard in settings.shards() for row in rows_of(shard_path(folder, shard))]
     if [row["machine"] for row in rows] != list(range(1, settings.machines + 1)):
         raise SystemExit("fleet: the shards do not hold every machine exactly once")
     for row in rows:

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -152,6 +153,62 @@ def test_two_jobs_on_one_folder_and_a_duplicate_shard(serial, tmp_path):
     (shards / "shard-0001.json").write_bytes((shards / "shard-0000.json").read_bytes())
     twice = fleet("page", tmp_path, check=False)
     assert twice.returncode == 1 and "exactly once" in twice.stderr
+
+
+def test_a_truncated_shard_is_refused_and_made_again_from_the_histories(serial, tmp_path):
+    for shard in "0123":
+        fleet("shard", tmp_path, "--index", shard, *SMALL)
+    for folder in ("shards", "truth"):
+        path = tmp_path / folder / "shard-0002.json"
+        path.write_bytes(path.read_bytes()[:-100])
+        refused = fleet("page", tmp_path, check=False)
+        assert refused.returncode == 1 and f"{folder}/shard-0002.json cannot be read" in refused.stderr
+        assert not (tmp_path / "machines.json").exists()
+        (tmp_path / "shards" / "shard-0002.json").unlink()
+        assert "0 campaigns added" in fleet("shard", tmp_path, "--index", "2", *SMALL).stdout
+    fleet("page", tmp_path, "--no-times")
+    assert results(tmp_path) == serial
+    assert_nothing_lost_or_twice(tmp_path)
+
+
+def test_a_full_disk_ends_a_shard_and_the_next_job_adds_the_rest(serial, tmp_path):
+    def small_files():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (50000, 50000))
+    command = [sys.executable, FLEET / "fleet.py", "shard", tmp_path, "--index", "1", *SMALL]
+    full = subprocess.run(command, preexec_fn=small_files, check=False, capture_output=True, text=True)
+    assert full.returncode != 0 and "InputError" in full.stderr, full.stderr
+    assert not list((tmp_path / "shards").glob("*"))
+    for dates in campaigns_of(tmp_path).values():
+        assert len(dates) in (0, 3, 10)  # all campaigns of a history, or none
+    for shard in "0123":
+        fleet("shard", tmp_path, "--index", shard, *SMALL)
+    fleet("page", tmp_path, "--no-times")
+    assert results(tmp_path) == serial
+    assert_nothing_lost_or_twice(tmp_path)
+
+
+def test_an_instrument_answers_to_errors_that_its_study_does_not_identify():
+    import abbe
+    import campaigns
+    import machines
+    mill = abbe.Machine.read(machines.MACHINE)
+    for kind in campaigns.KINDS:
+        found = dict(zip(kind.followed, campaigns.responses(mill, kind)))
+        for name, row in found.items():
+            own = {"EXX[P1]": "scale X", "EYY[P1]": "scale Y", "EZZ[P1]": "scale Z"}.get(name)
+            own = own or ("bend " + name[:3] if name.endswith("[P2]") else name.replace("_", " "))
+            unit = 1e-3 if name.endswith("[P2]") or name.startswith("reversal") else 1e-6
+            assert abs(row[machines.NAMES.index(own)] / unit - 1) < 0.02, (kind.name, name)
+    # The arc in YZ stands below the middle of the travel of Z, where its parabola (P2) has a slope. By hand: of the
+    # radial deviation cos(a) P2, which is odd about the vertical, a shift of the ball and a squareness are fitted.
+    bar = dict(zip(campaigns.KINDS[0].followed, campaigns.responses(mill, campaigns.KINDS[0])))
+    angle = numpy.radians(numpy.linspace(-10, 190, 21))
+    height = -340 + 150 * numpy.sin(angle)
+    parabola = 1.5 * ((height + 230) / 230) ** 2 - 0.5
+    columns = numpy.array([numpy.cos(angle), 150 * numpy.sin(angle) * numpy.cos(angle)]).T
+    slope = numpy.linalg.lstsq(columns, numpy.cos(angle) * parabola, rcond=None)[0][1] * 1e-3
+    found = bar["EA0Z"][machines.NAMES.index("bend EYZ")]
+    assert abs(slope) > 2e-6 and abs(abs(found / slope) - 1) < 0.02, (found, slope)
 
 
 def test_slurm(serial, tmp_path):

@@ -74,7 +74,8 @@ DisplacementFields displacement_fields(const Machine& machine, const ErrorSet& e
                                        const std::vector<std::uint8_t>& covered) {
   DisplacementFields result = displacement_fields(machine, errors, parameters, pose_source(poses), covered);
   const ReversalShift reversal(errors);
-  if (!reversal.acts_on(poses)) return result;
+  const auto is_reversal = [&](std::size_t p) { return reversal.axis_of(p) != ReversalShift::npos; };
+  if (!reversal.acts_on(poses) || std::none_of(parameters.begin(), parameters.end(), is_reversal)) return result;
   const GivenStates given(machine, errors);
   Deviation deviation;
   Eigen::MatrixXd by_positions;

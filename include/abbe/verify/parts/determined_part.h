@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "abbe/errors/poses.h"
@@ -42,5 +43,22 @@ struct DeterminedPart {
 /// inverses, adjustment, the datum problem and S-transformations (1985).
 DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, const ParameterCovariance& covariance,
                                const Eigen::MatrixXd& unseen, const PoseList& poses, const ErrorMap& deviation);
+
+/// As in DeterminedPart.
+struct OpenDirections {
+  std::vector<std::size_t> directions;
+  std::size_t rank = 0;
+};
+
+/// The open directions alone, where there is nothing to split: only the parameters that `unseen` contains take part,
+/// which are usually few.
+///
+/// @param parameters  of the errors, [n]
+/// @param unseen      [n, q]
+/// @param covered     per pose: 0 leaves it out
+/// @throws std::invalid_argument if sizes do not fit
+OpenDirections open_directions(const Machine& machine, const ErrorSet& errors,
+                               const std::vector<std::size_t>& parameters, const Eigen::MatrixXd& unseen,
+                               const PoseList& poses, const std::vector<std::uint8_t>& covered);
 
 }  // namespace abbe

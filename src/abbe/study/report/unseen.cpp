@@ -10,10 +10,8 @@
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/study/identification/predicted_readings.h"
-#include "abbe/study/identification/setup_drifts.h"
-#include "abbe/study/identification/setups_problem.h"
-#include "abbe/study/identification/time_blocks.h"
 #include "abbe/study/random_poses.h"
+#include "abbe/study/report/open_directions.h"
 #include "abbe/study/study_steps.h"
 #include "abbe/verify/compensated_poses.h"
 #include "abbe/verify/error_map.h"
@@ -65,12 +63,6 @@ std::vector<double> refitted_nominal_errors(const Machine& machine, const Instru
   return errors;
 }
 
-std::vector<AxisRange> known_ranges(const Study& study, const StudyResult& result) {
-  std::vector<const ErrorSet*> errors = {&result.identification.errors};
-  if (result.campaign.truth) errors.push_back(&*result.campaign.truth);
-  return unseen_ranges(study.machine, errors);
-}
-
 /// Distances of the nominal machine from readings, the set-up's unknowns fitted to all readings that were used.
 std::vector<double> nominal_errors(const Study& study, const StudyResult& result, std::size_t s,
                                    const InstrumentReadings& readings) {
@@ -117,7 +109,8 @@ void add_readings(const Study& study, const StudyResult& result, std::size_t s, 
 /// What an instrument that sees points would read at random poses, each from one of its stations on one of its targets.
 InstrumentReadings unseen_points(const Study& study, const StudyResult& result, std::size_t s, std::size_t poses) {
   const std::shared_ptr<const Instrument> truth = result.campaign.setups[s].truth->in_coordinates();
-  const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed) + s);
+  const PoseList list =
+      random_plan(study.machine, ranges_of_known_errors(study, result), poses, unseen_seed(study.seed) + s);
   InstrumentReadings plan;
   for (std::size_t k = 0; k < list.count(); ++k) plan.append(list.pose(k), k % truth->items().size());
   stand_at_references(study.machine, plan.poses);
@@ -150,22 +143,6 @@ ParameterCovariance covariance_of_errors(const StudyResult& result) {
   return covariance;
 }
 
-/// Directions that the gauge fixes, as far as they are errors of the machine: [machine parameters, constraints].
-Eigen::MatrixXd unseen_directions(const Identification& identification) {
-  const std::vector<GaugeConstraint>& constraints = identification.gauge.constraints;
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(identification.errors.parameter_count()),
-                                                     static_cast<Eigen::Index>(constraints.size()));
-  for (std::size_t i = 0; i < constraints.size(); ++i) {
-    for (std::size_t p = 0; p < identification.parameters.size(); ++p) {
-      const ParameterId& id = identification.parameters[p].id;
-      if (!id.is_machine()) continue;
-      directions(static_cast<Eigen::Index>(id.index), static_cast<Eigen::Index>(i)) =
-          constraints[i].direction[static_cast<Eigen::Index>(p)];
-    }
-  }
-  return directions;
-}
-
 /// Whether the truth is compared with the identified errors at the given sides of approach.
 /// @param deviation  of the mean of both directions; its displacement becomes that of the sides where that is found
 bool compare_with_truth(const Study& study, const StudyResult& result, const PoseList& commands, ErrorMap& deviation,
@@ -187,36 +164,21 @@ bool compare_with_truth(const Study& study, const StudyResult& result, const Pos
 /// @param statistics  false: the directions alone
 void add_volumetric(const Study& study, const StudyResult& result, std::size_t poses, bool statistics, Tally& tally) {
   UnseenPoses& unseen = tally.unseen;
-  const ErrorSet& identified = result.identification.errors;
-  const bool simulated = unseen.against_truth;
-  const ErrorSet& actual = simulated ? *result.campaign.truth : identified;
-  const bool both_directions = !identified.reversals.empty() || !actual.reversals.empty();
-  PoseList list =
-      random_unseen_poses(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed), both_directions);
-  stand_at_references(study.machine, list);
-  ErrorMapOptions options;
-  options.orientation = false;
-  options.remove_rigid_motion = true;
-  options.threads = study.threads;
+  const ErrorSet &identified = result.identification.errors, &actual = *result.campaign.truth;
+  PoseList list = poses_not_measured(study, result, poses, !identified.reversals.empty() || !actual.reversals.empty());
+  const ErrorMapOptions options = unseen_map_options(study);
   const PoseSource source = pose_source(list);
   const ErrorMap mean_before = error_map(study.machine, actual, nullptr, source, options);
   ErrorMap deviation = error_map(study.machine, actual, &identified, source, options);
   for (std::size_t k = 0; k < deviation.count(); ++k) deviation.covered[k] &= mean_before.covered[k];
   Eigen::Matrix3Xd before;
-  const bool at_commands = simulated && compare_with_truth(study, result, list, deviation, before);
+  const bool at_commands = compare_with_truth(study, result, list, deviation, before);
   // Poses that do not say how the workpiece is turned, such as those of a rotary table alone: to first order, for the
   // mean of both directions, and so is what is predicted.
-  if (simulated && !at_commands) list.approach.clear();
+  if (!at_commands) list.approach.clear();
   const DeterminedPart part = determined_part(study.machine, identified, covariance_of_errors(result),
                                               unseen_directions(result.identification), list, deviation);
-  for (const std::size_t direction : part.open_directions) {
-    const GaugeConstraint& constraint = result.identification.gauge.constraints[direction];
-    unseen.open.push_back(constraint.words);
-    unseen.open_constraints.push_back(direction);
-  }
-  unseen.open_known = true;
-  unseen.open_rank = part.open_rank;
-  if (!simulated) return;
+  tell_open_directions(result, {part.open_directions, part.open_rank}, unseen);
   double open_square = 0;
   std::size_t covered = 0;
   for (std::size_t k = 0; k < deviation.count(); ++k) {
@@ -248,7 +210,11 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
   const std::vector<CampaignSetup>& setups = result.campaign.setups;
   const bool points_only = std::all_of(setups.begin(), setups.end(),
                                        [](const CampaignSetup& setup) { return setup.device->measures_points(); });
-  add_volumetric(study, result, poses, !points_only, tally);
+  if (unseen.against_truth) {
+    add_volumetric(study, result, poses, !points_only, tally);
+  } else {
+    find_open_directions(study, result, poses, unseen);
+  }
   for (std::size_t s = 0; s < setups.size() && (!unseen.against_truth || points_only); ++s) {
     add_readings(study, result, s,
                  unseen.against_truth ? unseen_points(study, result, s, poses) : held_out_readings(study, result, s),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "abbe/verify/covariance_root.h"
 #include "abbe/verify/displacement_fields.h"
@@ -15,8 +16,79 @@ using Index = Eigen::Index;
 // Part of the effect its errors can have on a machine of this size that a direction has to have, beside a rigid motion,
 // to be called open. Errors of 1e-4 rad turn a rigid motion of the nominal machine into one that is not quite.
 constexpr double kOpenPart = 1e-3;
+// A parameter with less than this part of the effect of a direction is rounding in it.
+constexpr double kNoPart = 1e-9;
+
+/// Effect of a unit of each parameter at every pose: 1 mm for a millimetre, the size of the workspace for a radian.
+Eigen::VectorXd effects(const Machine& machine, const ErrorSet& errors, const std::vector<std::size_t>& parameters,
+                        double size) {
+  const std::vector<bool> is_angle = parameters_are_angles(machine, errors);
+  Eigen::VectorXd effect(static_cast<Index>(parameters.size()));
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    effect[static_cast<Index>(p)] = is_angle[parameters[p]] ? size : 1;
+  }
+  return effect;
+}
+
+/// The unseen directions that are open, and an orthonormal basis of their displacements.
+struct OpenPart {
+  std::vector<std::size_t> directions;
+  Eigen::MatrixXd basis;  ///< [3 poses, rank]
+};
+
+/// @param rigid   orthonormal displacements by rigid motions
+/// @param beside  displacements by the unseen directions
+/// @param effect  of a unit of each parameter
+OpenPart open_part(const Eigen::MatrixXd& rigid, Eigen::MatrixXd beside, const Eigen::MatrixXd& unseen,
+                   const Eigen::VectorXd& effect) {
+  remove_span(rigid, beside);
+  const Index rows = beside.rows();
+  const Eigen::VectorXd possible = std::sqrt(static_cast<double>(rows)) * (unseen.cwiseAbs().transpose() * effect);
+  OpenPart part;
+  for (Index i = 0; i < unseen.cols(); ++i) {
+    if (beside.col(i).norm() > kOpenPart * possible[i]) part.directions.push_back(static_cast<std::size_t>(i));
+  }
+  Eigen::MatrixXd columns(rows, static_cast<Index>(part.directions.size()));
+  for (Index i = 0; i < columns.cols(); ++i) {
+    const Index column = static_cast<Index>(part.directions[static_cast<std::size_t>(i)]);
+    columns.col(i) = beside.col(column) / possible[column];
+  }
+  part.basis = orthonormal_columns(columns, kOpenPart);
+  return part;
+}
+
+/// Which parameters the directions consist of.
+std::vector<std::size_t> parts_of(const Eigen::MatrixXd& unseen, const Eigen::VectorXd& effect) {
+  const Eigen::MatrixXd parts = effect.asDiagonal() * unseen.cwiseAbs();
+  const Eigen::RowVectorXd least = kNoPart * parts.colwise().sum();
+  std::vector<std::size_t> found;
+  for (Index p = 0; p < parts.rows(); ++p) {
+    if ((parts.row(p).array() > least.array()).any()) found.push_back(static_cast<std::size_t>(p));
+  }
+  return found;
+}
 
 }  // namespace
+
+OpenDirections open_directions(const Machine& machine, const ErrorSet& errors,
+                               const std::vector<std::size_t>& parameters, const Eigen::MatrixXd& unseen,
+                               const PoseList& poses, const std::vector<std::uint8_t>& covered) {
+  if (unseen.rows() != static_cast<Index>(parameters.size())) {
+    throw std::invalid_argument("open directions: parameters and directions do not fit");
+  }
+  const std::vector<std::size_t> parts = parts_of(unseen, effects(machine, errors, parameters, 1));
+  if (parts.empty()) return {};
+  std::vector<std::size_t> used;
+  Eigen::MatrixXd directions(static_cast<Index>(parts.size()), unseen.cols());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    used.push_back(parameters[parts[p]]);
+    directions.row(static_cast<Index>(p)) = unseen.row(static_cast<Index>(parts[p]));
+  }
+  const DisplacementFields at = displacement_fields(machine, errors, used, poses, covered);
+  OpenPart part = open_part(orthonormal_columns(at.by_motion, 1e-10), at.by_parameter * directions, directions,
+                            effects(machine, errors, used, at.size));
+  return {std::move(part.directions), static_cast<std::size_t>(part.basis.cols())};
+}
 
 DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, const ParameterCovariance& covariance,
                                const Eigen::MatrixXd& unseen, const PoseList& poses, const ErrorMap& deviation) {
@@ -29,25 +101,11 @@ DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, c
   const Index rows = at.by_parameter.rows();
   const Eigen::MatrixXd rigid = orthonormal_columns(at.by_motion, 1e-10);
 
+  OpenPart found =
+      open_part(rigid, at.by_parameter * unseen, unseen, effects(machine, errors, covariance.parameters, at.size));
+  const Eigen::MatrixXd& open = found.basis;
   DeterminedPart part;
-  Eigen::MatrixXd beside = at.by_parameter * unseen;
-  remove_span(rigid, beside);
-  // At every pose 1 mm for a millimetre, the size of the workspace for a radian.
-  const std::vector<bool> is_angle = parameters_are_angles(machine, errors);
-  Eigen::VectorXd effect(n);
-  for (Index p = 0; p < n; ++p) {
-    effect[p] = is_angle[covariance.parameters[static_cast<std::size_t>(p)]] ? at.size : 1;
-  }
-  const Eigen::VectorXd possible = std::sqrt(static_cast<double>(rows)) * (unseen.cwiseAbs().transpose() * effect);
-  for (Index i = 0; i < unseen.cols(); ++i) {
-    if (beside.col(i).norm() > kOpenPart * possible[i]) part.open_directions.push_back(static_cast<std::size_t>(i));
-  }
-  Eigen::MatrixXd open_columns(rows, static_cast<Index>(part.open_directions.size()));
-  for (Index i = 0; i < open_columns.cols(); ++i) {
-    const Index column = static_cast<Index>(part.open_directions[static_cast<std::size_t>(i)]);
-    open_columns.col(i) = beside.col(column) / possible[column];
-  }
-  const Eigen::MatrixXd open = orthonormal_columns(open_columns, kOpenPart);
+  part.open_directions = std::move(found.directions);
   part.open_rank = static_cast<std::size_t>(open.cols());
 
   Eigen::MatrixXd left(rows, 1);

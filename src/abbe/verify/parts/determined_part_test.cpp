@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/errors/reversal.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
@@ -187,6 +188,36 @@ TEST_F(DeterminedParts, AnErrorThatCannotReachTheFunctionalPointIsNotOpen) {
   EXPECT_EQ(open(), 0u);
   machine.tool_offset = {100, 0, -120};
   EXPECT_EQ(open(), 1u);
+}
+
+TEST_F(DeterminedParts, OpenDirectionsAloneAreTheSame) {
+  // Reversal values, which poses with an approach displace in their own way, take part in two directions.
+  identified.reversals = {{0, 2e-3}, {2, 1e-3}};
+  count = identified.parameter_count();
+  RandomStream random(8, 1);
+  for (std::vector<std::int8_t>& side : poses.approach = std::vector<std::vector<std::int8_t>>(3)) {
+    for (std::size_t k = 0; k < poses.count(); ++k) side.push_back(random.uniform() < 0.5 ? -1 : 1);
+  }
+  const Index rows = static_cast<Index>(count);
+  Eigen::MatrixXd some = Eigen::MatrixXd::Zero(rows, 6);
+  some.topLeftCorner(36, 3) = unseen.topRows(36);
+  some(static_cast<Index>(parameter(1, Component::A, 1)), 2) = 1e-13;  // rounding
+  some(static_cast<Index>(first_reversal(identified)), 3) = 1;
+  some.col(4) = some.col(0) + some.col(1) + 1e-3 * some.col(3);
+  some(static_cast<Index>(parameter(1, Component::B, 1)), 5) = -1;
+  std::vector<std::size_t> parameters(count);
+  for (std::size_t p = 0; p < parameters.size(); ++p) parameters[p] = p;
+  ErrorMap map = deviation_of(Eigen::VectorXd::Zero(rows));
+  map.covered[3] = 0;
+  const DeterminedPart part = determined_part(machine, identified, covariance_of(count, 1), some, poses, map);
+  const OpenDirections open = open_directions(machine, identified, parameters, some, poses, map.covered);
+  EXPECT_EQ(part.open_directions, (std::vector<std::size_t>{0, 3, 4, 5}));
+  EXPECT_EQ(open.directions, part.open_directions);
+  EXPECT_EQ(open.rank, part.open_rank);
+  EXPECT_EQ(open.rank, 3u);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(rows, 2);
+  EXPECT_EQ(open_directions(machine, identified, parameters, none, poses, map.covered).rank, 0u);
+  EXPECT_THROW(open_directions(machine, identified, {1, 2}, none, poses, map.covered), std::invalid_argument);
 }
 
 TEST_F(DeterminedParts, PosesOutsideTheKnownRangeTakeNoPart) {
