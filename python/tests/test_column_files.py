@@ -217,20 +217,22 @@ def in_python(bar, name, change):
     changed = []
 
     def progress(step, done, total):
-        if step == "identify" and not changed:
+        if step == "identifying" and not changed:
             changed.append(True)
             change(bar.folder / name)
 
     with pytest.raises(abbe.InputError) as error:
         study.run(map=False, advice=False, progress=progress)
+    assert changed
     return str(error.value)
 
 
 @pytest.mark.parametrize("form", ["arrow", "zstd.arrow"])
 def test_files_that_change_during_the_run_are_refused(bar, form):
-    where = bar.table.column_names.index("length_mm")
-    other = bar.table.set_column(where, "length_mm", pa.array([v.as_py() + 0.5 for v in bar.table.column("length_mm")]))
-    name, changed = bar.write(bar.table, form), bar.write(other, form, "other")
+    table = pa.concat_tables([bar.table] * 8).combine_chunks()  # more than the reader keeps
+    lengths = pa.array([value + 0.5 for value in table.column("length_mm").to_pylist()])
+    other = table.set_column(table.column_names.index("length_mm"), "length_mm", lengths)
+    name, changed = bar.write(table, form), bar.write(other, form, "other")
 
     def overwrite(path):
         with path.open("r+b") as file:
@@ -238,13 +240,13 @@ def test_files_that_change_during_the_run_are_refused(bar, form):
 
     said = in_python(bar, name, overwrite)
     assert name in said and ("has changed since" in said or "cannot be read" in said), said
-    name = bar.write(bar.table, form)
+    name = bar.write(table, form)
     said = in_python(bar, name, lambda path: os.truncate(path, path.stat().st_size // 2))
     assert name in said and ("cannot be read" in said or "ended while it read" in said), said
 
 
 def test_a_run_that_was_killed_goes_on(bar):
-    table = pa.concat_tables([bar.table] * 6).combine_chunks()
+    table = pa.concat_tables([bar.table] * 20).combine_chunks()
     name = bar.write(table)
     whole = bar.run(name, in_memory=1000)
     results = bar.folder / "killed"

@@ -27,7 +27,7 @@ CURSORS = 8
 # A compressed record batch can be read only as a whole.
 MOST_BYTES_OF_BATCH = 32 << 20
 # Pages of a mapped file count as memory of this process until it is mapped anew.
-MOST_MAPPED_ROWS = 1 << 20
+MOST_MAPPED_BYTES = 16 << 20
 INTEGER, FLOAT, TEXT = "integer", "float", "text"
 
 
@@ -58,7 +58,7 @@ def kind_of(arrow, kind):
 
 
 class ParquetTable:
-    is_mapped = False
+    most_rows_of_cursor = None
 
     def __init__(self, arrow, path):
         import pyarrow.parquet
@@ -78,8 +78,6 @@ class ParquetTable:
 
 
 class IpcTable:
-    is_mapped = True
-
     def __init__(self, arrow, path):
         self.arrow, self.path = arrow, path
         reader = self.reader()
@@ -94,6 +92,7 @@ class IpcTable:
                               f"{MOST_BYTES_OF_BATCH >> 20}: write smaller batches (max_chunksize), or do not compress")
             self.starts.append(self.starts[-1] + batch.num_rows)
         self.rows = self.starts[-1]
+        self.most_rows_of_cursor = MOST_MAPPED_BYTES * self.rows // os.path.getsize(path)
 
     def reader(self):
         # All columns: with some of them only, pyarrow copies the whole batch.
@@ -139,7 +138,8 @@ class Cursor:
     def can_serve(self, file, first, columns):
         if self.file != file or self.columns != columns or first < self.begin:
             return False
-        if self.table.is_mapped and self.end - self.start > MOST_MAPPED_ROWS:
+        most = self.table.most_rows_of_cursor
+        if most is not None and self.end - self.start > most:
             return False
         starts = self.table.starts
         return first <= self.end or starts[bisect.bisect_right(starts, first) - 1] <= self.end
@@ -166,27 +166,28 @@ def piece(buffer, begin, end, width):
     return memoryview(buffer).cast("B")[begin * width:end * width] if buffer is not None else b""
 
 
+# The bytes of rows are the same whatever was read before: they have fingerprints.
 def joined(arrow, arrays, kind):
-    """The arrays as one of a type, by itself or as what a dictionary numbers."""
+    """The arrays as one of a type, by itself or as what a dictionary numbers; texts without gaps."""
     arrays = [array.dictionary_decode() if arrow.types.is_dictionary(array.type) else array for array in arrays]
-    arrays = [array if array.type == kind else array.cast(kind) for array in arrays]
-    return arrays[0] if len(arrays) == 1 else arrow.concat_arrays(arrays)
+    return arrow.concat_arrays([arrow.array([], kind), *(a if a.type == kind else a.cast(kind) for a in arrays)])
 
 
 def number_parts(arrow, arrays):
     """The bytes of numbers: whether all are there; if not, of each whether it is; the numbers."""
     array = joined(arrow, arrays, arrow.float64())
-    numbers = piece(array.buffers()[1], array.offset, array.offset + len(array), 8)
-    if not array.null_count:
-        return [b"\1", numbers]
-    present = array.is_valid().cast(arrow.uint8())
-    return [b"\0", piece(present.buffers()[1], present.offset, present.offset + len(present), 1), numbers]
+    parts = [b"\1"]
+    if array.null_count:
+        present = array.is_valid().cast(arrow.uint8())
+        parts = [b"\0", piece(present.buffers()[1], present.offset, present.offset + len(present), 1)]
+        array = array.fill_null(0)
+    return [*parts, piece(array.buffers()[1], array.offset, array.offset + len(array), 8)]
 
 
 def text_parts(arrow, arrays):
     """The bytes of texts: where each begins, and the last one ends; the texts. One that is not there is empty."""
     array = joined(arrow, arrays, arrow.large_string())
-    array = array.fill_null("") if array.null_count else array
+    array = joined(arrow, [array.fill_null("")], arrow.large_string()) if array.null_count else array
     ends = piece(array.buffers()[1], array.offset, array.offset + len(array) + 1, 8)
     places = ends.cast("q")
     return [ends, piece(array.buffers()[2], places[0], places[-1], 1)]
