@@ -39,7 +39,8 @@ def watch_memory(process, peaks, end):
 
 
 def run(command, **options):
-    """Runs a command; returns its exit code, time in s, and largest resident memory in MiB, its own and its children's."""
+    """Runs a command; returns its exit code, time and processor time in s, and largest resident memory in MiB, its own
+    and its children's."""
     begin = time.monotonic()
     process, peaks, end = subprocess.Popen(command, **options), {}, threading.Event()
     watch = threading.Thread(target=watch_memory, args=(process.pid, peaks, end))
@@ -50,7 +51,8 @@ def run(command, **options):
     watch.join()
     own = peaks.pop(str(process.pid), 0)
     # The system counts the largest of a process and its children.
-    return os.waitstatus_to_exitcode(status), seconds, own if peaks else usage.ru_maxrss / 1024, sum(peaks.values())
+    own = own if peaks else usage.ru_maxrss / 1024
+    return os.waitstatus_to_exitcode(status), (seconds, usage.ru_utime + usage.ru_stime), own, sum(peaks.values())
 
 
 def simulated_rows(abbe, example, machine, folder):
@@ -139,11 +141,12 @@ def main():
         with (options.folder / "out.txt").open("w") as out:
             command = [options.abbe, "run", study, "-o", options.folder / "results"]
             environment = {**os.environ, "ABBE_COLUMNS_PYTHON": sys.executable}
-            code, seconds, memory, of_reader = run(command, stdout=out, stderr=out, env=environment)
+            code, (seconds, processor), memory, of_reader = run(command, stdout=out, stderr=out, env=environment)
         if code not in (0, 1):
             raise SystemExit((options.folder / "out.txt").read_text())
         summary = json.loads((options.folder / "results/summary.json").read_text())
-        print(f"{options.readings} readings, {size / 2**20:.0f} MiB of {options.format}: {seconds:.1f} s, {memory:.0f} MiB resident"
+        print(f"{options.readings} readings, {size / 2**20:.0f} MiB of {options.format}: {seconds:.1f} s,"
+              f" {processor:.1f} s of processors, {memory:.0f} MiB resident"
               f"{f' and {of_reader:.0f} MiB of the reader' if of_reader else ''},"
               f" exit code {code}, residuals {summary['normalised_residual_rms']:.4f} times as large as stated")
     finally:

@@ -23,7 +23,8 @@ MAGIC = b"\0columns"
 ROWS_TOGETHER = 16384
 # Threads ask for neighbouring rows a little out of order, so what was read just before stays.
 KEPT_BATCHES = 4
-CURSORS = 8
+# Each thread goes through a range of rows of its own.
+CURSORS = min(16, 2 + (os.cpu_count() or 1))
 # A compressed record batch can be read only as a whole.
 MOST_BYTES_OF_BATCH = 32 << 20
 # Pages of a mapped file count as memory of this process until it is mapped anew.
@@ -73,8 +74,10 @@ class ParquetTable:
             self.starts.append(self.starts[-1] + metadata.row_group(group).num_rows)
 
     def batches(self, group, columns):
-        groups = range(group, len(self.starts) - 1)
-        return self.file.iter_batches(ROWS_TOGETHER, groups, [self.schema.names[c] for c in columns], use_threads=False)
+        names = [self.schema.names[c] for c in columns]
+        # One by one: pyarrow has buffers for all groups that it is given.
+        for each in range(group, len(self.starts) - 1):
+            yield from self.file.iter_batches(ROWS_TOGETHER, [each], names, use_threads=False)
 
 
 class IpcTable:
