@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Time and memory of an identification from readings that do not fit into memory.
 
-    benchmarks/streamed_readings.py build/release/bin/abbe --readings 10000000 --folder readings
+    benchmarks/streamed_readings.py build/release/bin/abbe --readings 10000000 --folder readings --format parquet
 
 Simulates the ball bar of examples/trunnion nearly without noise, repeats its readings with noise of 0.2 um until there
 are as many as asked for, in four files, and identifies from them with `readings_in_memory`. Prints time and the largest
-resident memory of the process. The files (60 to 70 bytes a reading) are removed at the end.
+resident memory of the process, and of the process that reads Parquet and Arrow files (the Python that runs this has to
+have pyarrow). The files (60 to 70 bytes a reading as text) are removed at the end.
 """
 
 import argparse
@@ -16,18 +17,42 @@ import random
 import re
 import shutil
 import subprocess
+import sys
+import threading
 import time
 
 NOISE_MM = 0.0002
 FILES = 4
 
 
+def watch_memory(process, peaks, end):
+    """Largest resident memory in MiB of a process and of every process that it starts, as long as it runs."""
+    while not end.wait(0.1):
+        try:
+            children = " ".join(file.read_text() for file in pathlib.Path(f"/proc/{process}/task").glob("*/children"))
+            for each in [str(process), *children.split()]:
+                peak = re.search(r"VmHWM:\s*(\d+)", pathlib.Path(f"/proc/{each}/status").read_text())
+                if peak:
+                    peaks[each] = int(peak[1]) / 1024
+        except OSError:
+            continue  # it has ended meanwhile
+
+
 def run(command, **options):
-    """Runs a command; returns its exit code, time in s, and largest resident memory in MiB."""
+    """Runs a command; returns its exit code, time and processor time in s, and largest resident memory in MiB, its own
+    and its children's."""
     begin = time.monotonic()
-    process = subprocess.Popen(command, **options)
+    process, peaks, end = subprocess.Popen(command, **options), {}, threading.Event()
+    watch = threading.Thread(target=watch_memory, args=(process.pid, peaks, end))
+    watch.start()
     _, status, usage = os.wait4(process.pid, 0)
-    return os.waitstatus_to_exitcode(status), time.monotonic() - begin, usage.ru_maxrss / 1024
+    seconds = time.monotonic() - begin
+    end.set()
+    watch.join()
+    own = peaks.pop(str(process.pid), 0)
+    # The system counts the largest of a process and its children.
+    own = own if peaks else usage.ru_maxrss / 1024
+    return os.waitstatus_to_exitcode(status), (seconds, usage.ru_utime + usage.ru_stime), own, sum(peaks.values())
 
 
 def simulated_rows(abbe, example, machine, folder):
@@ -66,6 +91,23 @@ def write_shards(folder, header, before, lengths, count):
     return shards
 
 
+def converted(shards, form):
+    """The files in another format, row by row, with the sizes of groups and batches that pyarrow chooses."""
+    import pyarrow
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    for shard in shards:
+        with pyarrow.csv.open_csv(shard) as rows:
+            to, schema = shard.with_suffix("." + form), rows.schema
+            writer = pyarrow.parquet.ParquetWriter(to, schema) if form == "parquet" else pyarrow.ipc.new_file(to, schema)
+            with writer:
+                for batch in rows:
+                    writer.write_batch(batch)
+        shard.unlink()
+    return [shard.with_suffix("." + form) for shard in shards]
+
+
 def measured_study(example, machine, shards, in_memory, folder):
     text = example.read_text()
     text = re.sub(r"(?s)\[simulate\].*?(?=\[\[setup\]\])", "", text)
@@ -84,6 +126,7 @@ def main():
     parser.add_argument("--readings", type=int, default=1_000_000)
     parser.add_argument("--in-memory", type=int, default=50_000, help="0: all readings in memory, to compare with")
     parser.add_argument("--folder", type=pathlib.Path, required=True)
+    parser.add_argument("--format", choices=["csv", "parquet", "arrow"], default="csv")
     options = parser.parse_args()
     root = pathlib.Path(__file__).resolve().parent.parent
     example, machine = root / "examples/trunnion/ball-bar.study.toml", root / "examples/machines/trunnion-mill.machine.toml"
@@ -91,14 +134,20 @@ def main():
     try:
         header, before, lengths = simulated_rows(options.abbe, example, machine, options.folder)
         shards = write_shards(options.folder, header, before, lengths, options.readings)
+        if options.format != "csv":
+            shards = converted(shards, options.format)
         size = sum(shard.stat().st_size for shard in shards)
         study = measured_study(example, machine, shards, options.in_memory, options.folder)
         with (options.folder / "out.txt").open("w") as out:
-            code, seconds, memory = run([options.abbe, "run", study, "-o", options.folder / "results"], stdout=out, stderr=out)
+            command = [options.abbe, "run", study, "-o", options.folder / "results"]
+            environment = {**os.environ, "ABBE_COLUMNS_PYTHON": sys.executable}
+            code, (seconds, processor), memory, of_reader = run(command, stdout=out, stderr=out, env=environment)
         if code not in (0, 1):
             raise SystemExit((options.folder / "out.txt").read_text())
         summary = json.loads((options.folder / "results/summary.json").read_text())
-        print(f"{options.readings} readings, {size / 2**20:.0f} MiB of text: {seconds:.1f} s, {memory:.0f} MiB resident,"
+        print(f"{options.readings} readings, {size / 2**20:.0f} MiB of {options.format}: {seconds:.1f} s,"
+              f" {processor:.1f} s of processors, {memory:.0f} MiB resident"
+              f"{f' and {of_reader:.0f} MiB of the reader' if of_reader else ''},"
               f" exit code {code}, residuals {summary['normalised_residual_rms']:.4f} times as large as stated")
     finally:
         shutil.rmtree(options.folder)

@@ -19,6 +19,10 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+# Parquet and Arrow files are read with the pyarrow of this Python.
+if sys.executable:
+    os.environ.setdefault("ABBE_COLUMNS_PYTHON", sys.executable)
+
 Progress = Union[Callable[[str, int, int], object], None]
 PathLike = Union[str, "os.PathLike[str]"]
 

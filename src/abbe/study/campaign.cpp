@@ -48,8 +48,8 @@ InstrumentFile read_file(const Study& study, const Setup& setup, const std::shar
   options.channels = channels;
   options.mapping = data.mapping;
   options.threads = study.threads;
-  return instrument_form(setup.instrument)
-      .readings.read(data.file, study.machine, device, setup.name, setup.noise_from_data, options);
+  return read_readings_file(instrument_form(setup.instrument).readings, data.file, study.machine, device, setup.name,
+                            setup.noise_from_data, options);
 }
 
 bool same_kind(const InstrumentReadings& a, const InstrumentReadings& b) {

@@ -47,6 +47,12 @@ InstrumentReadings read_instrument_readings(const std::filesystem::path& path, c
 InstrumentReadings parse_instrument_readings(std::string_view text, const std::string& file, const Machine& machine,
                                              const Instrument& instrument, const MeasurementOptions& options = {});
 
+/// Reads a file in the form of an instrument, or the same columns from a Parquet or Arrow IPC file.
+/// @throws InputError as the form does; of column files with the number of the row, from 1
+InstrumentFile read_readings_file(const InstrumentFileForm& form, const std::filesystem::path& path,
+                                  const Machine& machine, const std::shared_ptr<const Instrument>& device,
+                                  const std::string& setup, bool noise_from_data, const MeasurementOptions& options);
+
 /// CSV text of readings: mm and deg, angles of readings in arcsec, uncertainties in um and arcsec; shortest decimals.
 std::string instrument_readings_text(const Machine& machine, const Instrument& instrument,
                                      const InstrumentReadings& readings);

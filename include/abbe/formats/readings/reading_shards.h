@@ -33,11 +33,11 @@ struct ShardSource {
   std::function<void(std::size_t done, std::size_t total)> progress{};  ///< in bytes, from any thread, one at a time
 };
 
-/// Readings in CSV files that stay on disk: parts of them are read whenever they are wanted.
+/// Readings in files that stay on disk: CSV, Parquet or Arrow IPC. Parts of them are read whenever they are wanted.
 ///
 /// The constructor reads every file twice: it finds the rows, and checks every field. A file that is given twice, under
-/// the same name or with the same bytes under another, and a file that ends within a row are refused. What is read
-/// later has to have the bytes of that time.
+/// the same name or with the same bytes under another, and a text that ends within a row are refused. What is read
+/// later has to have the bytes of that time, or, from files by columns, the values.
 class ReadingShards {
  public:
   /// Readings that are parsed together, a multiple of Observations::kBlockSize.

@@ -49,6 +49,7 @@ struct CsvTable {
 /// Lines that are blank or begin with # are passed over; fields may be in double quotes; byte order mark and CRLF are
 /// accepted. Rows keep their order and every one of them counts or is an error. Parsed in parallel, without an
 /// allocation per row; the result does not depend on the number of threads.
+/// @param text  or rows of a column file as formats/readings/column_file.h has them; a row is then in line row + 2
 /// @param file  name for messages
 /// @throws InputError for unknown, missing and repeated columns, rows of wrong length, fields that are no number of the
 ///         column's unit

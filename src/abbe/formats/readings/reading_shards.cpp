@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/readings/shard_index.h"
+#include "abbe/formats/readings/shard_table.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/digest.h"
 #include "abbe/geometry/parallel_blocks.h"
@@ -90,8 +90,7 @@ struct ReadingShards::Implementation {
   explicit Implementation(ShardSource from) : source(std::move(from)), device(source.device) {}
 
   ShardSource source;
-  std::vector<std::unique_ptr<PartFile>> files;
-  std::vector<std::string> headers;
+  std::vector<std::unique_ptr<ShardTable>> files;
   std::vector<ShardPart> parts;
   std::vector<std::size_t> first_of_file;
   std::size_t count = 0, total_bytes = 0, done_bytes = 0;
@@ -116,15 +115,15 @@ struct ReadingShards::Implementation {
 };
 
 void ReadingShards::Implementation::open_files() {
-  for (const ShardFile& file : source.files) {
-    for (const std::unique_ptr<PartFile>& other : files) {
+  files = open_shard_tables(source.files);
+  for (auto file = files.begin(); file != files.end(); ++file) {
+    total_bytes += (*file)->size();
+    for (auto other = files.begin(); other != file; ++other) {
       std::error_code ignored;
-      if (!std::filesystem::equivalent(file.path, other->path(), ignored)) continue;
-      throw InputError({.file = file.path.string()}, "is given twice; its readings would count twice",
+      if (!std::filesystem::equivalent((*file)->path(), (*other)->path(), ignored)) continue;
+      throw InputError({.file = (*file)->path().string()}, "is given twice; its readings would count twice",
                        fmt::format("every file of set-up {} once", source.setup));
     }
-    files.push_back(std::make_unique<PartFile>(file.path));
-    total_bytes += files.back()->size();
   }
 }
 
@@ -133,7 +132,7 @@ void ReadingShards::Implementation::find_all_rows() {
   Digest all;
   for (std::size_t f = 0; f < files.size(); ++f) {
     first_of_file.push_back(count);
-    ShardRows rows = find_rows(*files[f], f, count, kTogether, [&](std::size_t bytes) { advance(bytes); });
+    const ShardRows rows = files[f]->find_rows(f, count, kTogether, [&](std::size_t bytes) { advance(bytes); });
     const std::string name = files[f]->path().string();
     const auto [other, is_new] = known.try_emplace({files[f]->size(), rows.content}, name);
     if (!is_new) {
@@ -143,7 +142,6 @@ void ReadingShards::Implementation::find_all_rows() {
     count += rows.count;
     all.add_text(name);
     all.add(rows.content);
-    headers.push_back(std::move(rows.header));
     parts.insert(parts.end(), rows.parts.begin(), rows.parts.end());
   }
   fingerprint = all.value();
@@ -155,16 +153,13 @@ InstrumentFile ReadingShards::Implementation::parse(const ShardPart& part, const
   options.mapping = source.files[part.file].mapping;
   options.threads = 1;
   try {
-    InstrumentFile file = source.form.parse(headers[part.file] + text, name, source.machine, device, source.setup,
-                                            source.noise_from_data, options);
+    InstrumentFile file =
+        source.form.parse(text, name, source.machine, device, source.setup, source.noise_from_data, options);
     if (file.readings.count() == part.count) return file;
-    throw InputError({.file = name, .line = part.line},
+    throw InputError({.file = name, .line = 2},
                      fmt::format("{} readings in {} rows", file.readings.count(), part.count), "one in every row");
   } catch (const InputError& error) {
-    InputError::Place place = error.place();
-    if (place.line < 2) throw;
-    place.line += part.line - 2;  // the header was line 1
-    throw InputError(place, error.problem(), error.expected());
+    throw files[part.file]->placed(error, part);
   }
 }
 
@@ -190,7 +185,7 @@ void ReadingShards::Implementation::check_all_rows() {
   std::optional<InstrumentFile> first;
   for (const ShardPart& part : parts) {
     if (part.first != first_of_file[part.file]) continue;
-    InstrumentFile file = parse(part, files[part.file]->read(part.begin, part.end));
+    InstrumentFile file = parse(part, files[part.file]->read(part));
     if (!first) first = file;
     check_like_first(*first, file, files[part.file]->path().string());
     device = file.device;
@@ -199,27 +194,30 @@ void ReadingShards::Implementation::check_all_rows() {
   const std::vector<std::string> names = device->target_names();
   for_each_block(parts.size(), source.threads, [&](std::size_t i) {
     ShardPart& part = parts[i];
-    const std::string text = files[part.file]->read(part.begin, part.end);
+    const std::string text = files[part.file]->read(part);
     part.bytes = fingerprint_of(text);
     const InstrumentFile file = parse(part, text);
     if (file.device->target_names() != names) {
-      throw InputError({.file = files[part.file]->path().string(), .line = part.line},
-                       "names " + file.device->target_names().back() + " for the first time far down in the file",
-                       "all of them within the first rows of a file, or in the study");
+      const InputError late({.file = files[part.file]->path().string(), .line = 2},
+                            "names " + file.device->target_names().back() + " for the first time far down in the file",
+                            "all of them within the first rows of a file, or in the study");
+      throw files[part.file]->placed(late, part);
     }
     const std::lock_guard lock(mutex);
     outermost.take(file.readings, part.first);
-    advance(text.size());
+    advance(files[part.file]->bytes_of(part));
   });
 }
 
 InstrumentReadings ReadingShards::Implementation::read_part(const ShardPart& part) const {
-  const PartFile& file = *files[part.file];
-  const std::string text = file.read(part.begin, part.end);
+  const ShardTable& file = *files[part.file];
+  const std::string text = file.read(part);
   if (fingerprint_of(text) != part.bytes) {
-    throw InputError({.file = file.path().string(), .line = part.line},
-                     fmt::format("one of {} rows from here on has changed since the file was read first", part.count),
-                     "a file that stays as it is until the end of the run");
+    const InputError changed(
+        {.file = file.path().string(), .line = 2},
+        fmt::format("one of {} rows from here on has changed since the file was read first", part.count),
+        "a file that stays as it is until the end of the run");
+    throw file.placed(changed, part);
   }
   return parse(part, text).readings;
 }

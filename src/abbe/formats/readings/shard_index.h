@@ -31,7 +31,7 @@ class PartFile {
 /// Rows of one file that are parsed together.
 struct ShardPart {
   std::size_t file = 0;
-  std::size_t begin = 0, end = 0;  ///< bytes
+  std::size_t begin = 0, end = 0;  ///< bytes; of a column file rows
   std::size_t line = 0;            ///< of its first row, from 1
   std::size_t first = 0;           ///< number of its first reading among those of all files
   std::size_t count = 0;           ///< rows

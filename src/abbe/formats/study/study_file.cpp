@@ -215,11 +215,11 @@ void require_files(TomlTable& root, const std::filesystem::path& folder) {
   require_channels(root);
   for (TomlTable& setup : root.tables("setup")) {
     require_channels(setup);
-    for (TomlTable& data : setup.tables("data")) data.file("file", folder, "a CSV file of readings");
+    for (TomlTable& data : setup.tables("data")) data.file("file", folder, "a file of readings");
   }
   require(root.optional_table("simulate"), "errors", "a file of errors");
   require(root.optional_table("identify"), "initial", "a file of errors");
-  require(root.optional_table("identify"), "held_out_file", "a CSV file of readings");
+  require(root.optional_table("identify"), "held_out_file", "a file of readings");
   require(root.optional_table("map"), "poses", "a CSV file of poses");
 }
 

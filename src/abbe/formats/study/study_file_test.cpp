@@ -160,7 +160,7 @@ locations = "EC0X"
   std::filesystem::remove(folder / "readings.csv");
   EXPECT_EQ(message_of([&] { read_study(folder / "a.study.toml"); }),
             (folder / "a.study.toml").string() + ":9:1: setup[1].data[1].file: there is no file " +
-                (folder / "readings.csv").string() + "; expected a CSV file of readings");
+                (folder / "readings.csv").string() + "; expected a file of readings");
   std::ofstream(folder / "readings.csv") << "x\n";
   const Study study = read_study(folder / "a.study.toml");
   EXPECT_EQ(study.name, "a");

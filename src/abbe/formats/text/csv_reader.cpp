@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
+#include "abbe/formats/text/column_block.h"
 #include "abbe/formats/text/csv_number.h"
 #include "abbe/formats/text/csv_rows.h"
 #include "abbe/formats/text/decimal_text.h"
@@ -264,6 +266,7 @@ std::size_t CsvRows::row_offset(std::size_t begin, std::size_t row) const {
 
 CsvTable read_csv(std::string_view text, const std::string& file, const std::vector<CsvColumn>& wanted,
                   const ColumnMapping& mapping, int threads) {
+  if (is_column_block(text)) return read_column_block(text, file, wanted, mapping, threads);
   const CsvRows rows(text, file, wanted, mapping);
   text = rows.text();
   const std::vector<CsvFileColumn>& columns = rows.columns();
@@ -297,6 +300,7 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
 }
 
 std::size_t csv_line(std::string_view text, std::size_t row) {
+  if (is_column_block(text)) return row + 2;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::size_t line = 0;
   bool header_seen = false;
@@ -312,6 +316,11 @@ std::size_t csv_line(std::string_view text, std::size_t row) {
 std::vector<std::size_t> csv_lines(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::vector<std::size_t> lines;
+  if (is_column_block(text)) {
+    lines.resize(column_block_head(text, "").rows);
+    std::iota(lines.begin(), lines.end(), 2);
+    return lines;
+  }
   std::size_t line = 0;
   bool header_seen = false;
   for (std::size_t at = 0; at < text.size();) {
