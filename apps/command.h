@@ -18,6 +18,11 @@ struct CommandLine {
   CommandLine();
   /// Heading in --help of the subcommands that are added from now on; empty: --help does not list them.
   void begin_section(const std::string& heading) { section_ = heading; }
+  /// Leaves work that the processes share in `run`.
+  void share(const std::function<int(ProcessGroup*)>& work) {
+    shares_work = true;
+    run = [work, group = processes] { return work(group); };
+  }
   /// It stands in the section that was begun last.
   /// @param example  shown at the end of --help
   Subcommand* add(const std::string& name, const std::string& description, const std::string& example);

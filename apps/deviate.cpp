@@ -1,4 +1,3 @@
-#include "abbe/formats/files/checkpoint.h"
 #include "abbe/study/scans/streamed_deviations.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
@@ -21,7 +20,7 @@ struct DeviateCommand {
   bool faces_of_file = false;
 };
 
-int run_deviate(const DeviateCommand& command) {
+int run_deviate(const DeviateCommand& command, ProcessGroup* processes) {
   ScanDeviationsRequest request = command.request;
   if (!request.transform_file.empty()) request.pose = read_transform_file(request.transform_file);
   if (command.lower_mm != 0 || command.upper_mm != 0) request.tolerance = {command.lower_mm, command.upper_mm};
@@ -34,14 +33,14 @@ int run_deviate(const DeviateCommand& command) {
   request.threads = command.files.threads;
   request.tolerances = command.options.tolerances;
   request.page = !command.options.output.empty();
-  StreamingOptions streaming = command.streaming;
-  streaming.output = command.options.output;
-  streaming.tell = tell_sentence;
-  const ScanDeviations result = deviations_of_file(std::move(request), command.files.scan_options(), streaming,
-                                                   {.progress = Progress("comparing").callback()});
-  const auto files = streaming.output.empty() ? decltype(deviation_files(result))() : deviation_files(result);
+  SharedWork work(processes, command.options.output, tell_sentence);
+  const ScanDeviations result =
+      deviations_of_file(std::move(request), command.files.scan_options(), command.streaming,
+                         {.progress = Progress("comparing").callback(), .work = work.driver()});
+  if (!work.is_first()) return kDone;
+  const auto files = command.options.output.empty() ? decltype(deviation_files(result))() : deviation_files(result);
   const int code = finish_evaluation(result.report, command.options, files);
-  if (result.unfinished) result.unfinished->remove();
+  work.done();
   return result.has_points() && !result.elsewhere ? code : static_cast<int>(kNegative);
 }
 
@@ -80,7 +79,7 @@ void add_deviate_command(CommandLine& line) {
   app->add_option("--stream-above", command->streaming.above,
                   "Points above which a scan is read in blocks (docs/scale.md), 27 bytes of a text each");
   app->add_flag("--json", command->options.json, "Print JSON for programs");
-  app->callback([&line, command] { line.run = [command] { return run_deviate(*command); }; });
+  app->callback([&line, command] { line.share([command](ProcessGroup* all) { return run_deviate(*command, all); }); });
 }
 
 }  // namespace abbe

@@ -35,8 +35,7 @@ void add_identify_command(CommandLine& line) {
   command->add_flag("--accept-misfit", options->accept_misfit,
                     "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
-    line.shares_work = true;
-    line.run = [options, processes = line.processes]() -> int {
+    line.share([options](ProcessGroup* processes) -> int {
       const Study study = read_study(options->study);
       if (!study.identification)
         throw InputError({.file = options->study}, "nothing to identify", "an [identify] table");
@@ -71,7 +70,7 @@ void add_identify_command(CommandLine& line) {
       if (!options->output.empty() && result.usable()) fmt::print("\n{} written\n", options->output);
       tell_distrust(study, result);
       return study_exit_code(study, result);
-    };
+    });
   });
 }
 

@@ -53,9 +53,9 @@ ErrorsMapRequest request_of_map(const MapOptions& options) {
 
 int run_map(const MapOptions& options, ProcessGroup* processes) {
   const ErrorsMapRequest request = request_of_map(options);
-  Progress progress("mapping the volumetric error");
   SharedWork work(processes, options.outputs.empty() ? "" : options.outputs.front(), tell_sentence);
-  const ErrorsMap map = map_errors(request, {.progress = progress.callback(), .work = work.driver()});
+  const ErrorsMap map =
+      map_errors(request, {.progress = Progress("mapping the volumetric error").callback(), .work = work.driver()});
   if (!work.is_first()) return kDone;
   const MapData data = errors_map_data(map);
   for (const std::string& output : options.outputs) require_map_name(output, data);
@@ -102,10 +102,7 @@ void add_map_command(CommandLine& line) {
   command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
   command->add_output_file("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");
   command->add_flag("--json", options->json, "Print JSON for programs");
-  command->callback([&line, options] {
-    line.shares_work = true;
-    line.run = [options, processes = line.processes]() -> int { return run_map(*options, processes); };
-  });
+  command->callback([&line, options] { line.share([options](ProcessGroup* all) { return run_map(*options, all); }); });
 }
 
 }  // namespace abbe

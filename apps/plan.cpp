@@ -10,6 +10,7 @@
 #include "abbe/study/planning/planning.h"
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 
@@ -31,13 +32,11 @@ void add_plan_command(CommandLine& line) {
                            "Page with the curve, the comparison with grids and the chosen poses (*.html)");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] {
-    line.run = [options]() -> int {
+    line.share([options](ProcessGroup* processes) -> int {
       const Study study = read_study(options->study);
-      StudyPlan result;
-      {
-        Progress progress("planning");
-        result = plan_study(study, {.progress = progress.callback()});
-      }
+      SharedWork work(processes, "", tell_sentence);
+      const StudyPlan result = plan_study(study, {.progress = Progress("planning").callback(), .work = work.driver()});
+      if (!work.is_first()) return kDone;
       const bool done = result.plan.status == PlanningStatus::done;
       if (done && !options->output.empty()) write_file_atomically(options->output, plan_csv(study, result));
       if (done && !options->plot.empty()) write_file_atomically(options->plot, plan_svg(study, result));
@@ -49,7 +48,7 @@ void add_plan_command(CommandLine& line) {
         if (done && !options->output.empty()) fmt::print("\n{} written\n", options->output);
       }
       return done && !leaves_states_open(result) ? kDone : kNegative;
-    };
+    });
   });
 }
 

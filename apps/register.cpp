@@ -11,6 +11,7 @@
 #include "command.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 #include "scan/scan_files.h"
@@ -41,7 +42,7 @@ struct RegisterCommand {
   }
 };
 
-int run_register(const RegisterCommand& command) {
+int run_register(const RegisterCommand& command, ProcessGroup* processes) {
   ScanRegistrationRequest request;
   request.options = command.options();
   request.scan_file = command.files.scan;
@@ -49,11 +50,10 @@ int run_register(const RegisterCommand& command) {
   request.scan = command.files.read_scan();
   request.part = command.files.read_part();
   request.compare = !command.output.empty();
-  ScanRegistration result;
-  {
-    Progress progress("registering");
-    result = register_scan(std::move(request), {.progress = progress.callback()});
-  }
+  SharedWork work(processes, "", tell_sentence);
+  const ScanRegistration result =
+      register_scan(std::move(request), {.progress = Progress("registering").callback(), .work = work.driver()});
+  if (!work.is_first()) return kDone;
   if (!command.output.empty()) write_result_files(command.output, scan_registration_files(result));
   if (command.json) {
     fmt::print("{}", json_text(scan_registration_json(result)));
@@ -95,7 +95,7 @@ void add_register_command(CommandLine& line) {
       "Results folder to write: registered.ply (the scan in the frame of the part), transform.csv, "
       "registration.json, report.html (deviations on the part); the first two only if a pose was found");
   app->add_flag("--json", command->json, "Print JSON for programs");
-  app->callback([&line, command] { line.run = [command] { return run_register(*command); }; });
+  app->callback([&line, command] { line.share([command](ProcessGroup* all) { return run_register(*command, all); }); });
 }
 
 }  // namespace abbe

@@ -46,8 +46,7 @@ void add_run_command(CommandLine& line) {
   command->add_flag("--accept-misfit", options->accept_misfit,
                     "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
-    line.shares_work = true;
-    line.run = [options, processes = line.processes]() -> int {
+    line.share([options](ProcessGroup* processes) -> int {
       Study study = read_study(options->study);
       if (!options->output.empty()) study.output = options->output;
       if (!options->before.empty()) study.report.before = options->before;
@@ -99,7 +98,7 @@ void add_run_command(CommandLine& line) {
       }
       require_printed(study.output / "customer-report.pdf", study.output / "customer-report.html", printed);
       return code;
-    };
+    });
   });
 }
 

@@ -1,6 +1,6 @@
-"""Measures what several processes of mpirun gain for a Monte Carlo and a map, and fits the model of docs/scale.md.
+"""Measures what several processes of mpirun gain for each kind of shared work, and fits the model of docs/scale.md.
 
-    several_processes.py --abbe PROGRAM --mpirun PROGRAM --examples FOLDER [--rounds N]
+    several_processes.py --abbe PROGRAM --mpirun PROGRAM --examples FOLDER [--rounds N] [--only KIND ...]
 
 One and two processes, each bound to a core, on which it runs one thread, run in turn, for a small and a large amount of
 work. Each figure is the best of its rounds, because other work on the machine only adds to it. Two kinds of time are
@@ -10,12 +10,17 @@ that is the time on the clock of a machine with nothing else to do. The model is
     time = a + b n / p + c n (p - 1) / p
 
 a: start, input and all that every process does by itself; b: computation of an item; c: what the first process spends
-on an item that another one has computed. a and b come from one process, c from two.
+on an item that another one has computed. a and b come from one process, c from two. Items are samples, poses or points;
+of a plan they are the readings to be chosen, with which the time grows faster than in proportion, so that its a, b and
+c hold between both sizes only.
 """
 
 import argparse
+import array
 import os
 import pathlib
+import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -71,6 +76,50 @@ def poses(runs, items):
             "--grid", f"Y_mm=-100:100:{side}")
 
 
+def scan_of_part(runs, items):
+    """The scan of the bracket in the examples many times over, each time displaced a little, as binary PLY."""
+    path = runs.folder / f"{items}.ply"
+    if path.exists():
+        return path
+    lines = (runs.arguments.examples / "scan/bracket-scan.csv").read_text().splitlines()
+    points = [tuple(map(float, line.split(","))) for line in lines if line[0] not in "#x"]
+    draw, numbers = random.Random(3), array.array("f")
+    for _ in range(items // len(points)):
+        shift = [draw.gauss(0, 0.02) for _ in range(3)]
+        for point in points:
+            numbers.extend(value + move for value, move in zip(point, shift))
+    properties = "".join(f"property float {axis}\n" for axis in "xyz")
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(numbers) // 3}\n{properties}end_header\n"
+    path.write_bytes(header.encode() + numbers.tobytes())
+    return path
+
+
+def deviations(runs, items, *more):
+    scans = runs.arguments.examples / "scan"
+    return ("deviate", scan_of_part(runs, items), scans / "bracket.stl", "--transform", scans / "bracket-transform.csv",
+            "--largest-mm", 0.3, "--threads", 1, *more)
+
+
+def streamed_deviations(runs, items):
+    return deviations(runs, items, "--stream-above", 1000)
+
+
+def registration(runs, items):
+    return ("register", scan_of_part(runs, items), runs.arguments.examples / "scan/bracket.stl", "--threads", 1)
+
+
+def plan(runs, items):
+    text = (runs.arguments.examples / "trunnion/trunnion.study.toml").read_text()
+    text = text.replace('"../machines/', f'"{runs.arguments.examples.resolve()}/machines/', 1)
+    text = text.replace("\nreadings = 240\n", f"\nreadings = {items}\n", 1)
+    text = re.sub(r"\nseed = (\d+)\n", r"\nseed = \1\nthreads = 1\n", text, count=1)
+    if "\nthreads = 1\n" not in text or f"\nreadings = {items}\n" not in text:
+        sys.exit("the study of the trunnion has changed")
+    study = runs.folder / f"plan-{items}.study.toml"
+    study.write_text(text)
+    return ("plan", study)
+
+
 def report(name, runs, words, sizes):
     best = {}
     for _ in range(runs.arguments.rounds):
@@ -99,11 +148,22 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--samples", type=int, default=400000)
     parser.add_argument("--poses", type=int, default=400000)
+    parser.add_argument("--points", type=int, default=16000000, help="of a scan, at least 8000")
+    parser.add_argument("--readings", type=int, default=240, help="of a plan, at least 200")
+    parser.add_argument("--only", nargs="+", metavar="KIND", help="monte-carlo, map, deviate, deviate-in-blocks, "
+                        "register, plan; default: all")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(arguments, pathlib.Path(folder))
-        report("Monte Carlo", runs, monte_carlo, (arguments.samples // 4, arguments.samples))
-        report("map", runs, poses, (arguments.poses // 4, arguments.poses))
+        kinds = {"monte-carlo": (monte_carlo, arguments.samples), "map": (poses, arguments.poses),
+                 "deviate": (deviations, arguments.points),
+                 "deviate-in-blocks": (streamed_deviations, arguments.points),
+                 "register": (registration, arguments.points), "plan": (plan, arguments.readings)}
+        for name in arguments.only or kinds:
+            if name not in kinds:
+                sys.exit(f"{name}: unknown; expected {', '.join(kinds)}")
+            words, items = kinds[name]
+            report(name, runs, words, (items // 4, items))
 
 
 if __name__ == "__main__":

@@ -89,6 +89,7 @@ class MpiGroup::FirstOfWork {
     is_done_[block] = 1;
     --open_;
     if (work_.finished) work_.finished(block);
+    if (work_.reduce) work_.reduce(block);
   }
 
   void answer(const Message& message, std::size_t threads) {
@@ -153,6 +154,7 @@ class MpiGroup::OtherOfWork {
       for (const std::size_t block : workers_.finished(kLook)) {
         pace.add(1);
         put_block(work_, block, results);
+        if (work_.reduce) work_.reduce(block);
         if (results.size() < kMessageBytes) continue;
         group_.send(0, kResults, results);
         results.clear();

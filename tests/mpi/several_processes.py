@@ -4,8 +4,10 @@
 """
 
 import argparse
+import array
 import os
 import pathlib
+import random
 import re
 import shutil
 import signal
@@ -305,8 +307,132 @@ def two_jobs(runs):
     require(last.returncode == 0 and "are taken from" in last.stderr, last.stderr)
 
 
+def scan_of_part(runs, name, copies):
+    """The scan of the bracket in the examples many times over, each time displaced a little, as binary PLY."""
+    lines = (runs.examples / "scan/bracket-scan.csv").read_text().splitlines()
+    points = [tuple(map(float, line.split(","))) for line in lines if line[0] not in "#x"]
+    draw, numbers = random.Random(3), array.array("f")
+    for _ in range(copies):
+        shift = [draw.gauss(0, 0.02) for _ in range(3)]
+        for point in points:
+            numbers.extend(value + move for value, move in zip(point, shift))
+    header = "".join(f"property float {axis}\n" for axis in "xyz")
+    path = runs.out / name
+    path.write_bytes(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(numbers) // 3}\n{header}end_header\n"
+                     .encode() + numbers.tobytes())
+    return path
+
+
+def deviate_words(runs, scan, *more):
+    scans = runs.examples / "scan"
+    return ("deviate", scan, scans / "bracket.stl", "--transform", scans / "bracket-transform.csv", "--largest-mm", 0.3,
+            "--faces-deg", 30, "-o", runs.out / "results", *more)
+
+
+def require_same_results(runs, words, runs_of):
+    """The text and every file in results/ for each of (processes, further words); 0 processes: without mpirun."""
+    expected = None
+    for processes, more in runs_of:
+        run = runs.together if processes else lambda _, *all_words: runs.alone(*all_words)
+        done = run(processes, *words, *more)
+        require(done.returncode == 0, processes, more, done.returncode, done.stderr)
+        found = (done.stdout, files_of(runs.out / "results"))
+        expected = expected or found
+        require(found[1].keys() == expected[1].keys() and len(found[1]) > 2, processes, more, list(found[1]))
+        for path, content in expected[1].items():
+            require(path.name.startswith(".") or found[1][path] == content, processes, more, path, "has other bytes")
+        require(found[0] == expected[0], processes, more, "prints", found[0])
+        require(not (runs.out / "results.unfinished").exists(), "left over after the results are whole")
+        shutil.rmtree(runs.out / "results")
+
+
+TIMES = tuple((processes, ("--threads", threads)) for processes in (0, 1, 2, 3, 5) for threads in (1, 2))
+
+
+def deviations(runs):
+    """Deviations of a scan in memory, for 1, 2, 3, 5 processes and 1, 2 threads."""
+    scan = scan_of_part(runs, "scan.ply", 100)
+    require_same_results(runs, deviate_words(runs, scan), TIMES)
+
+
+def streamed_deviations(runs):
+    """Deviations of a scan that is read in blocks, so long that a part of its points is shown."""
+    scan = scan_of_part(runs, "scan.ply", 1200)
+    require_same_results(runs, deviate_words(runs, scan, "--stream-above", 1000), TIMES[::3])
+
+
+def deviations_after_a_kill(runs):
+    """A killed comparison goes on from its finished pieces, with any number of processes, to the same bytes."""
+    scan = scan_of_part(runs, "scan.ply", 6000)
+    out, kept = runs.out / "results", runs.out / "results.unfinished"
+    words = deviate_words(runs, scan, "--stream-above", 1000, "--threads", 1)
+    alone = runs.alone(*words)
+    require(alone.returncode == 0 and not kept.exists(), alone.stderr)
+    expected = files_of(out)
+    for processes in (0, 3):
+        shutil.rmtree(out)
+        job = subprocess.Popen([runs.mpirun, "-n", "2", str(runs.abbe), *map(str, words)],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=runs.environment())
+        kill_when_kept(runs, job, kept, str(scan), 100)
+        require(not out.exists() and kept.exists(), "results of a killed run")
+        done = runs.together(processes, *words) if processes else runs.alone(*words)
+        require(done.returncode == 0 and done.stdout == alone.stdout, done.stderr)
+        require("blocks of the comparison of the scan are taken from" in done.stderr, done.stderr)
+        found = files_of(out)
+        for path, content in expected.items():
+            require(path.name.startswith(".") or found[path] == content, path, "has other bytes after a resumption")
+        require(not kept.exists(), "left over after the results are whole")
+
+
+def deviations_of_other_files(runs):
+    """A process whose part or scan is another one is found out, in memory and in blocks."""
+    scan, other = scan_of_part(runs, "scan.ply", 100), scan_of_part(runs, "other.ply", 100)
+    content = bytearray(other.read_bytes())
+    content[-1] ^= 1  # a sign or an exponent of the last number
+    other.write_bytes(content)
+    script = runs.out / "abbe"
+    for more in ((), ("--stream-above", 1000)):
+        mine, theirs = (" ".join(f"'{word}'" for word in map(str, deviate_words(runs, file, *more)))
+                        for file in (scan, other))
+        script.write_text(f'#!/bin/sh\nif [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then exec "{runs.abbe}" {theirs}; fi\n'
+                          f'exec "{runs.abbe}" {mine}\n')
+        script.chmod(0o755)
+        done = subprocess.run([runs.mpirun, "-n", "2", script], capture_output=True, text=True, env=runs.environment())
+        require(done.returncode == 2 and "of another problem" in done.stderr, more, done.returncode, done.stderr)
+        require(not (runs.out / "results").exists(), "results were written")
+
+
+def registrations(runs):
+    """The pose of a scan, its covariance, and the scan on its part."""
+    scan = scan_of_part(runs, "scan.ply", 60)
+    words = ("register", scan, runs.examples / "scan/bracket.stl", "-o", runs.out / "results")
+    require_same_results(runs, words, TIMES[::4])
+
+
+def plans(runs):
+    """The readings of a plan, and the grids that it is compared with."""
+    study = runs.out / "trunnion.study.toml"
+    text = (runs.examples / "trunnion/trunnion.study.toml").read_text()
+    text = text.replace('"../machines/', f'"{runs.examples}/machines/', 1)
+    text = text.replace("\nposes = 1500\n", "\nposes = 300\n", 1).replace("readings = 240\n", "readings = 100\n", 1)
+    study.write_text(text)
+    require("poses = 300" in study.read_text() and "readings = 100" in study.read_text(), "the study has changed")
+    expected = None
+    for processes in (0, 2, 3):
+        words = ("plan", study, "-o", runs.out / "poses.csv", "--report", runs.out / "page.html", "--json", "--force")
+        done = runs.together(processes, *words) if processes else runs.alone(*words)
+        require(done.returncode == 0, processes, done.stderr)
+        found = [done.stdout, *((runs.out / name).read_bytes() for name in ("poses.csv", "page.html"))]
+        expected = expected or found
+        require(found == expected, processes, "processes: other bytes")
+    require("all axes together" in expected[0], "no grids in", expected[0])
+
+
 CASES = {"MonteCarlo": monte_carlo, "Maps": maps, "KilledAndResumed": killed_and_resumed, "TwoJobs": two_jobs,
          "ReadAgain": read_again, "ReadAgainAfterAKill": read_again_after_a_kill,
+         "Deviations": deviations, "StreamedDeviations": streamed_deviations,
+         "DeviationsAfterAKill": deviations_after_a_kill, "DeviationsOfOtherFiles": deviations_of_other_files,
+         "Registrations": registrations, "Plans": plans,
          "SameBytes": same_bytes, "WorkersOfOtherFiles": other_files, "LostProcess": lost_process,
          "OtherSubcommands": other_subcommands, "MissingProgram": missing_program}
 

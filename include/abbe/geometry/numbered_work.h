@@ -29,6 +29,7 @@ struct NumberedWork {
   bool in_parallel = true;
   bool is_followed = false;  ///< more such work follows, so nobody knows how long all of it takes
   bool for_all = false;      ///< every process goes on with the results; else the first one alone has them all
+  bool is_kept = true;       ///< results are worth a file; else they are computed again after a kill
 
   /// Fingerprint of everything that the results depend on: equal ones may be mixed.
   std::function<std::uint64_t()> fingerprint;
@@ -41,6 +42,10 @@ struct NumberedWork {
   std::vector<std::uint8_t> is_there{};  ///< [blocks] whose results are in their place already; empty: none
   /// Called once for every other block when its results are in their place, one call at a time but from any thread.
   std::function<void(std::size_t block)> finished{};
+  /// For results that are too large to be kept of every block, and that may be added up in any order: adds those of a
+  /// block to the sum and drops them. Called once for every block that is in its place, one call at a time but from any
+  /// thread, when they have been sent or written and nobody asks for them any more. Not with `for_all`.
+  std::function<void(std::size_t block)> reduce{};
 
   bool has(std::size_t block) const { return !is_there.empty() && is_there[block] != 0; }
 };

@@ -65,8 +65,9 @@ ScanDeviations deviations(const PointsArgument& scan, const MeshArgument& part,
   request.page = page;
   enter_transform(transform, request);
   enter_scan_and_part(scan, unit, part, part_unit, request);
-  return stoppable_result(
-      [&](const std::stop_token& stop) { return naming_arguments([&] { return find_deviations(request, stop); }); });
+  return stoppable_result([&](const std::stop_token& stop) {
+    return naming_arguments([&] { return find_deviations(request, {.stop = stop}); });
+  });
 }
 
 }  // namespace

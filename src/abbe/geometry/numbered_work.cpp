@@ -15,9 +15,9 @@ void work_in_threads(const NumberedWork& work) {
   std::mutex one_at_a_time;
   for_each_block(open.size(), work.in_parallel ? work.threads : 1, [&](std::size_t i) {
     work.compute(open[i]);
-    if (!work.finished) return;
     const std::lock_guard lock(one_at_a_time);
-    work.finished(open[i]);
+    if (work.finished) work.finished(open[i]);
+    if (work.reduce) work.reduce(open[i]);
   });
 }
 

@@ -47,6 +47,10 @@ class PointCloudBlocks {
   std::size_t end() const;    ///< byte behind the last point
   /// Byte behind a block of about so many points that begins at `from`.
   std::size_t block_end(std::size_t from, std::size_t points) const;
+  /// Points, about; of records those with coordinates that are not finite too.
+  std::size_t about_points() const;
+  /// Points that read() gives from one end of a block to another. Faster: their coordinates are not converted.
+  std::size_t count(std::size_t from, std::size_t to, int threads = 0) const;
   /// Points from one end of a block to another. @param threads  0: all; the result does not depend on it
   /// @throws InputError
   CloudBlock read(std::size_t from, std::size_t to, int threads = 0) const;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/registration/pose_difference.h"
 #include "abbe/geometry/rigid_transform.h"
 #include "abbe/geometry/surface/closest_point.h"
@@ -28,6 +29,9 @@ struct FineRegistrationOptions {
   int iterations = 100;
   double movement_mm = 0;  ///< done when no point of the scan moves more; 0: 1e-9 of the extent of the scan
   int threads = 0;         ///< 0: all; the result does not depend on it
+  /// Who goes over very many points; empty: this process. Every process gets the result. Its fingerprints do not know
+  /// the surface.
+  WorkDriver work{};
 };
 
 enum class FineRegistrationStatus { not_run, ok, too_few_points, not_converged, undetermined };

@@ -29,6 +29,7 @@ struct RegistrationOptions {
   double crease_angle = 0.52;  ///< as SmoothSurface, rad
   std::uint64_t seed = 1;      ///< the same seed gives the same answer, whatever the number of threads
   int threads = 0;
+  WorkDriver work{};  ///< as FineRegistrationOptions::work
 };
 
 /// Another pose that fits as well as the best one.

@@ -286,13 +286,15 @@ std::string open_errors(const PlanningModel& model, const PlanningSpace& space, 
                         std::size_t rank);
 
 /// Looks for the grids that one would really take: for every number of the curve, for the plan's and for larger ones.
+/// @param job  no progress; grids are numbered work, and every process gets the result
 /// @throws Stopped
 void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
-                        StudyPlan& result, const std::stop_token& stop = {});
+                        StudyPlan& result, const JobOptions& job = {});
 
 /// Looks for grids at plain states: the lowest and the highest, or one condition; as many readings as the plan has.
+/// @param job  as compare_with_grids()
 /// @throws Stopped
 void compare_with_plain_states(const PlanningModel& model, const PlanningSpace& space,
-                               const Eigen::MatrixXd& predictions, StudyPlan& result, const std::stop_token& stop = {});
+                               const Eigen::MatrixXd& predictions, StudyPlan& result, const JobOptions& job = {});
 
 }  // namespace abbe

@@ -27,9 +27,7 @@
 //
 // The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/registration.md.
 
-#include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,12 +36,11 @@
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/report/evaluations/evaluation_report.h"
+#include "abbe/study/job_options.h"
 #include "abbe/verify/parts/scan_comparison.h"
 #include "abbe/verify/parts/surface_deviation.h"
 
 namespace abbe {
-
-class Checkpoint;
 
 /// By what the deviations of a part are stated, beside the part as a whole.
 enum class DeviationFaces {
@@ -80,21 +77,18 @@ struct ScanDeviations {
   /// Half of the points that count lie farther from the part than a tenth of its diagonal: the scan is not where the
   /// part is, and its deviations say nothing about the part. A note of the report says so.
   bool elsewhere = false;
-
-  std::shared_ptr<Checkpoint>
-      unfinished{};  ///< of a scan that was read in blocks: to be removed with the results there
-
   /// Whether any point counts.
   bool has_points() const { return !compared.counted_mm.empty(); }
 };
 
 /// Compares a scan with its part. Opens no file and prints nothing.
-/// @param stop  looked at between the steps, and before every block of points
+/// @param job  progress: points that were compared. Blocks of points are numbered work: of several processes the first
+///   one gets the result, and the others one without points
 /// @throws InputError for a scan without points, a part without triangles or without the faces that were asked for, a
 ///   transform of a registration that found no pose, a band whose lower end is above the upper one, and as
 ///   apply_tolerances()
 /// @throws Stopped
-ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::stop_token& stop = {});
+ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOptions& job = {});
 
 /// Files of the points that count, name and contents: deviation.csv and deviation.ply (coloured).
 std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result);

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "abbe/formats/shapes/point_cloud_file.h"
@@ -20,11 +19,8 @@ inline constexpr std::uint64_t kStreamedAbove = 20000000;
 
 struct StreamingOptions {
   std::uint64_t above = kStreamedAbove;       ///< --stream-above: larger scans are read in blocks
-  std::string output;                         ///< --output: its checkpoint is OUTPUT.unfinished; empty: there is none
   std::size_t block = std::size_t{1} << 19U;  ///< points that are in memory at a time; no result depends on it
-  double checkpoint_seconds = 10;             ///< between checkpoints
   std::size_t shown = PointSample::kDefault;  ///< points in the picture and the files, beside the extremes
-  std::function<void(const std::string&)> tell{};  ///< called with messages: that it goes on, and from where
 };
 
 /// Whether a scan is read in blocks: its file is binary PLY or PCD and states more points than `above`, or is a text
@@ -37,9 +33,9 @@ bool is_read_in_blocks(const std::string& scan_file, std::uint64_t above);
 /// blocks nor kills make a difference to any byte of the result.
 /// @param request  without the scan
 /// @param scan     how to read it
-/// @param job      progress: bytes of the scan that were read of those to be read now, by the calling thread
-/// @throws InputError as find_deviations(), for a scan that changes while it is read, and as Checkpoint; Stopped, after
-///   a checkpoint
+/// @param job      progress: in blocks, bytes of the scan that were compared; as a whole, as find_deviations(). Its
+///   pieces are numbered work: of several processes the first one gets the result, and the others one without points
+/// @throws InputError as find_deviations(), and for a scan that changes while it is read; Stopped
 ScanDeviations deviations_of_file(ScanDeviationsRequest request, const PointCloudOptions& scan,
                                   const StreamingOptions& options = {}, const JobOptions& job = {});
 

@@ -27,6 +27,8 @@ class FineHistogram {
   /// Class of a finite value, for add().
   static std::uint32_t class_of(double value);
   void add(std::uint32_t number) { ++counts_[number]; }
+  /// @throws std::invalid_argument for a class that does not exist
+  void add(std::uint32_t number, std::uint64_t count);
 
   std::uint64_t count() const;
   /// Percentile as percentile() has it. @param fraction  0..1 @return zeros if there are no values
@@ -38,8 +40,6 @@ class FineHistogram {
 
   /// Numbers and counts of the classes that have any.
   std::vector<std::pair<std::uint32_t, std::uint64_t>> occupied() const;
-  /// @throws std::invalid_argument for a class that does not exist
-  void set(const std::vector<std::pair<std::uint32_t, std::uint64_t>>& occupied);
 
  private:
   std::vector<std::uint64_t> counts_;  ///< ascending values

@@ -36,8 +36,9 @@ class DeviationSums {
   /// @param options  its regions have to outlive the object
   explicit DeviationSums(const SurfaceDeviationOptions& options, std::size_t sample = PointSample::kDefault);
 
-  /// Adds the next points. @param points  [3, n] mm, frame of the part @param closest  [n] on the part
-  void add(const Eigen::Matrix3Xd& points, std::span<const SurfacePoint> closest, int threads);
+  /// Adds points that follow each other. @param first  number of the first one among the points of the scan
+  /// @param points  [3, n] mm, frame of the part @param closest  [n] on the part
+  void add(std::uint64_t first, const Eigen::Matrix3Xd& points, std::span<const SurfacePoint> closest, int threads);
 
   std::uint64_t points() const { return points_; }  ///< all that were added
   std::uint64_t beyond_border() const { return beyond_border_; }
@@ -47,16 +48,16 @@ class DeviationSums {
   const FineHistogram& histogram() const { return histogram_; }
   const PointSample& sample() const { return sample_; }
 
-  /// All of it as bytes, for a process of the same program that goes on.
-  std::string state() const;
+  /// All of it as bytes, for the same program: to be added to sums of other points of the scan.
+  /// @param known  a choice among other points, which has been added there before: what it does not keep is left out
+  std::string state(const PointSample& known) const;
   /// @throws std::invalid_argument for bytes that are no state of sums with these options
-  void set_state(std::string_view state);
+  void add_state(std::string_view state);
 
  private:
   void add_regions(std::span<const SurfacePoint> closest, std::span<const std::uint32_t> classes, int threads);
 
   SurfaceDeviationOptions options_;
-  std::size_t most_;
   std::uint64_t points_ = 0, beyond_border_ = 0, too_far_ = 0;
   DeviationTotals all_;
   std::vector<DeviationTotals> regions_;

@@ -26,6 +26,8 @@ class PointSample {
   /// Whether add() might keep it: most points are not, and need not be made.
   bool wants(std::uint64_t number, double deviation_mm) const;
   void add(const SampledPoint& point);
+  /// Whether add() of this point, which may have been added already, leaves it here.
+  bool keeps(const SampledPoint& point) const;
 
   /// All that are kept, in the order of their numbers, each once.
   std::vector<SampledPoint> points() const;

@@ -34,5 +34,8 @@ struct ScanComparison {
 /// @throws std::invalid_argument for faces that are not those of the part's triangles
 ScanComparison compare_scan(const ClosestPointFinder& surface, const Eigen::Matrix3Xd& points,
                             const ScanComparisonOptions& options = {});
+/// The same where the closest points are known. @param closest  [n]
+ScanComparison compare_scan(std::vector<SurfacePoint> closest, const Eigen::Matrix3Xd& points,
+                            const ScanComparisonOptions& options = {});
 
 }  // namespace abbe

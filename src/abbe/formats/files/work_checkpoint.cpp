@@ -54,6 +54,12 @@ class WorkCheckpoint::OneWork {
     if (!all.found_.empty()) take_found();
     for (const std::uint8_t there : rest_.is_there) open_ += there == 0 ? 1 : 0;
     rest_.finished = [this](std::size_t block) { finish(block); };
+    rest_.reduce = nullptr;
+  }
+
+  /// What was not written need not be kept any longer.
+  void end() {
+    for (const std::size_t block : not_written_) reduce(block);
   }
 
   const NumberedWork& rest() const { return rest_; }
@@ -73,6 +79,7 @@ class WorkCheckpoint::OneWork {
       work_.unpack(block, all_.read(place));
       rest_.is_there[block] = 1;
       if (work_.finished) work_.finished(block);
+      reduce(block);
       ++count;
     }
     all_.is_used_ = true;
@@ -94,12 +101,18 @@ class WorkCheckpoint::OneWork {
     all_.begin_to_write();
     is_written_ = true;
     for (const std::size_t earlier : not_written_) append(earlier);
+    not_written_.clear();
+  }
+
+  void reduce(std::size_t block) const {
+    if (work_.reduce) work_.reduce(block);
   }
 
   void append(std::size_t block) {
     std::vector<std::byte> results;
     work_.pack(block, results);
     all_.append(fingerprint(), block, results);
+    reduce(block);
   }
 
   WorkCheckpoint& all_;
@@ -135,10 +148,12 @@ void WorkCheckpoint::tell(const std::string& sentence) const {
 std::string WorkCheckpoint::header() const { return std::string(kKindOfFile) + options_.version + "\n"; }
 
 void WorkCheckpoint::work(const NumberedWork& work, const WorkDriver& driver) {
+  if (!work.is_kept) return do_work(driver, work);
   if (!begin_) begin_ = std::chrono::steady_clock::now();
   if (!has_looked_) open_existing();
   OneWork one(*this, work);
   do_work(driver, one.rest());
+  one.end();
 }
 
 void WorkCheckpoint::open_existing() {

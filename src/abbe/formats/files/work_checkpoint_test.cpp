@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <numeric>
+#include <thread>
 
 #include "abbe/formats/files/empty_folder_for_test.h"
 #include "abbe/formats/text/input_error.h"
@@ -107,6 +110,59 @@ TEST_F(WorkCheckpointTest, KilledWorkGoesOnWithItsFinishedBlocks) {
   EXPECT_TRUE(fs::exists(file()));
   EXPECT_EQ(finish(), Numbers::kBlocks - 17);
   EXPECT_NE(said_.find("17 of 40 blocks"), std::string::npos) << said_;
+}
+
+// Results that are added up and dropped are still there when they are written, also those from before the file began.
+TEST_F(WorkCheckpointTest, BlocksAreReducedOnceAndWrittenBefore) {
+  const double all = std::accumulate(expected_.begin(), expected_.end(), 0.0);
+  for (const double after_s : {0.0, 0.02, 1e9}) {
+    for (const std::size_t killed : {std::size_t{17}, std::size_t{0}}) {
+      Numbers numbers;
+      numbers.killed_after = killed;
+      std::vector<int> reduced(Numbers::kBlocks);
+      double sum = 0;
+      NumberedWork work = numbers.work();
+      work.threads = 1;
+      work.compute = [compute = work.compute](std::size_t block) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        compute(block);
+      };
+      work.reduce = [&](std::size_t block) {
+        ++reduced[block];
+        std::vector<std::byte> bytes;
+        work.pack(block, bytes);
+        std::array<double, 3> values{}, zeros{};
+        std::span<const std::byte> rest = bytes;
+        unpack_numbers(rest, values);
+        sum += values[0] + values[1] + values[2];
+        bytes.clear();
+        pack_numbers(zeros, bytes);
+        work.unpack(block, bytes);
+      };
+      CheckpointOptions options = at_once();
+      options.after_s = after_s;
+      WorkCheckpoint checkpoint(output(), options);
+      if (killed > 0) {
+        EXPECT_THROW(checkpoint.work(work, {}), Killed);
+        continue;
+      }
+      checkpoint.work(work, {});
+      checkpoint.remove();
+      EXPECT_EQ(reduced, std::vector<int>(Numbers::kBlocks, 1)) << after_s;
+      EXPECT_NEAR(sum, all, 1e-12) << after_s;
+      EXPECT_EQ(numbers.computed, Numbers::kBlocks - (after_s < 1 ? 17 : 0));
+    }
+  }
+}
+
+TEST_F(WorkCheckpointTest, WorkThatIsNotKeptMakesNoFile) {
+  Numbers numbers;
+  WorkCheckpoint checkpoint(output(), at_once());
+  NumberedWork work = numbers.work();
+  work.is_kept = false;
+  checkpoint.work(work, {});
+  EXPECT_FALSE(fs::exists(file()));
+  EXPECT_EQ(numbers.values(), expected_);
 }
 
 TEST_F(WorkCheckpointTest, SeveralKillsAddUp) {

@@ -16,6 +16,8 @@ class PointCloudBlocks::Reader {
  public:
   virtual ~Reader() = default;
   virtual std::size_t block_end(std::size_t from, std::size_t points) const = 0;
+  virtual std::size_t about_points() const = 0;
+  virtual std::size_t count(std::size_t from, std::size_t to, int threads) const = 0;
   virtual CloudBlock read(std::size_t from, std::size_t to, int threads) const = 0;
 
   std::string format;

@@ -98,6 +98,10 @@ std::size_t PointCloudBlocks::end() const { return reader_->end; }
 std::size_t PointCloudBlocks::block_end(std::size_t from, std::size_t points) const {
   return reader_->block_end(from, points);
 }
+std::size_t PointCloudBlocks::about_points() const { return reader_->about_points(); }
+std::size_t PointCloudBlocks::count(std::size_t from, std::size_t to, int threads) const {
+  return reader_->count(from, to, threads);
+}
 CloudBlock PointCloudBlocks::read(std::size_t from, std::size_t to, int threads) const {
   return reader_->read(from, to, threads);
 }

@@ -20,6 +20,7 @@ Eigen::Matrix3Xd all_points(const std::string& contents, const std::string& name
     const std::size_t end = blocks.block_end(at, block);
     EXPECT_GT(end, at);
     const CloudBlock found = blocks.read(at, end);
+    EXPECT_EQ(blocks.count(at, end), static_cast<std::size_t>(found.points.cols()));
     all.conservativeResize(3, all.cols() + found.points.cols());
     all.rightCols(found.points.cols()) = found.points;
     at = end;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -64,6 +65,20 @@ class RecordReader : public PointCloudBlocks::Reader {
     return from + std::min((end - from) / stride, points) * stride;
   }
 
+  std::size_t about_points() const override { return (end - begin) / stride; }
+
+  std::size_t count(std::size_t from, std::size_t to, int threads) const override {
+    const std::size_t records = (to - from) / stride, blocks = (records + kRecordsTogether - 1) / kRecordsTogether;
+    if (!leaves_out) return records;
+    std::vector<std::size_t> finite(blocks);
+    for_each_block(blocks, threads, [&](std::size_t block) {
+      const std::size_t last = std::min(records, (block + 1) * kRecordsTogether);
+      for (std::size_t i = block * kRecordsTogether; i < last; ++i)
+        finite[block] += is_finite(from + i * stride) ? 1 : 0;
+    });
+    return std::accumulate(finite.begin(), finite.end(), std::size_t{0});
+  }
+
   CloudBlock read(std::size_t from, std::size_t to, int threads) const override {
     const std::size_t count = (to - from) / stride, blocks = (count + kRecordsTogether - 1) / kRecordsTogether;
     CloudBlock result;
@@ -92,6 +107,12 @@ class RecordReader : public PointCloudBlocks::Reader {
   const char* record = "point";  ///< in messages
 
  private:
+  bool is_finite(std::size_t at) const {
+    return std::all_of(numbers.begin(), numbers.end(), [&](const RecordNumber& number) {
+      return std::isfinite(number_reader(number)(contents_.data() + at + number.offset, swap));
+    });
+  }
+
   /// @returns how many points are kept; they stand from `first` on
   std::size_t read_records(std::size_t from, std::size_t first, std::size_t last, Eigen::Matrix3Xd& points) const {
     const double factor = millimetres(unit.length), largest = kLargestInput / factor;

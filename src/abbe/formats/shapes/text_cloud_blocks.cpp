@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cstring>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -29,6 +29,16 @@ class TextReader : public PointCloudBlocks::Reader {
     return line_end == std::string_view::npos ? end : line_end + 1;
   }
 
+  std::size_t about_points() const override { return (end - begin + kBytesOfPointInText - 1) / kBytesOfPointInText; }
+
+  std::size_t count(std::size_t from, std::size_t to, int threads) const override {
+    const std::vector<TextBlock> pieces = split_into_blocks<TextBlock>(text_.substr(0, to), from);
+    std::vector<std::size_t> points(pieces.size());
+    for_each_block(pieces.size(), threads,
+                   [&](std::size_t i) { points[i] = count_lines(pieces[i].begin, pieces[i].end); });
+    return std::accumulate(points.begin(), points.end(), std::size_t{0});
+  }
+
   CloudBlock read(std::size_t from, std::size_t to, int threads) const override {
     std::vector<TextBlock> pieces = split_into_blocks<TextBlock>(text_.substr(0, to), from);
     std::vector<Eigen::Matrix3Xd> points(pieces.size());
@@ -50,6 +60,7 @@ class TextReader : public PointCloudBlocks::Reader {
   }
 
  protected:
+  virtual std::size_t count_lines(std::size_t from, std::size_t to) const = 0;
   virtual std::optional<TextRefusal> read_lines(std::size_t from, std::size_t to, Eigen::Matrix3Xd& points) const = 0;
 
   std::string_view text_;
@@ -67,6 +78,8 @@ class XyzReader : public TextReader {
   }
 
  protected:
+  std::size_t count_lines(std::size_t from, std::size_t to) const override { return count_xyz_lines(text_, from, to); }
+
   std::optional<TextRefusal> read_lines(std::size_t from, std::size_t to, Eigen::Matrix3Xd& points) const override {
     PointCloud cloud;
     auto refusal = read_xyz_lines(text_, from, to, columns_, kLargestInput / factor_, cloud);
@@ -94,6 +107,8 @@ class CsvReader : public TextReader {
   }
 
  protected:
+  std::size_t count_lines(std::size_t from, std::size_t to) const override { return rows_.count(from, to); }
+
   std::optional<TextRefusal> read_lines(std::size_t from, std::size_t to, Eigen::Matrix3Xd& points) const override {
     CsvTable table;
     auto refusal = rows_.read(from, to, table);

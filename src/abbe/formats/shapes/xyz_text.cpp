@@ -43,22 +43,6 @@ std::size_t count_words(std::string_view line) {
   return words;
 }
 
-std::size_t count_rows(std::string_view text, const TextBlock& block) {
-  std::size_t rows = 0;
-  for (std::size_t at = block.begin; at < block.end;) {
-    const char first = text[at];
-    if (first >= '0' && first <= '9') {
-      const void* line_end = std::memchr(text.data() + at, '\n', block.end - at);
-      at = line_end == nullptr ? block.end
-                               : static_cast<std::size_t>(static_cast<const char*>(line_end) - text.data()) + 1;
-      ++rows;
-    } else if (first_word(csv_next_line(text, at)) != nullptr) {
-      ++rows;
-    }
-  }
-  return rows;
-}
-
 class PointReader {
  public:
   PointReader(std::string_view text, std::size_t columns, double largest, PointCloud& cloud, XyzBlock& block)
@@ -132,6 +116,22 @@ class PointReader {
 
 }  // namespace
 
+std::size_t count_xyz_lines(std::string_view contents, std::size_t begin, std::size_t end) {
+  std::size_t rows = 0;
+  for (std::size_t at = begin; at < end;) {
+    const char first = contents[at];
+    if (first >= '0' && first <= '9') {
+      const void* line_end = std::memchr(contents.data() + at, '\n', end - at);
+      at = line_end == nullptr ? end
+                               : static_cast<std::size_t>(static_cast<const char*>(line_end) - contents.data()) + 1;
+      ++rows;
+    } else if (first_word(csv_next_line(contents, at)) != nullptr) {
+      ++rows;
+    }
+  }
+  return rows;
+}
+
 std::size_t xyz_columns(std::string_view contents, const std::string& file, double largest) {
   std::size_t columns = 0;
   for (std::size_t at = 0; at < contents.size() && columns == 0;) {
@@ -162,7 +162,7 @@ std::optional<TextRefusal> read_xyz_lines(std::string_view contents, std::size_t
   XyzBlock block;
   block.begin = begin;
   block.end = end;
-  block.rows = count_rows(contents, block);
+  block.rows = count_xyz_lines(contents, begin, end);
   cloud.points.resize(3, static_cast<Eigen::Index>(block.rows));
   cloud.normals.resize(3, columns == 6 ? static_cast<Eigen::Index>(block.rows) : 0);
   PointReader(contents, columns, largest, cloud, block).read();
@@ -173,7 +173,8 @@ PointCloud parse_xyz(std::string_view contents, const std::string& file, double 
   if (contents.starts_with("\xEF\xBB\xBF")) contents.remove_prefix(3);
   const std::size_t columns = xyz_columns(contents, file, largest);
   std::vector<XyzBlock> blocks = split_into_blocks<XyzBlock>(contents, 0);
-  for_each_block(blocks.size(), threads, [&](std::size_t i) { blocks[i].rows = count_rows(contents, blocks[i]); });
+  for_each_block(blocks.size(), threads,
+                 [&](std::size_t i) { blocks[i].rows = count_xyz_lines(contents, blocks[i].begin, blocks[i].end); });
   std::size_t rows = 0;
   for (XyzBlock& block : blocks) {
     block.first_row = rows;

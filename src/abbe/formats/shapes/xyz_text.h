@@ -23,4 +23,7 @@ std::size_t xyz_columns(std::string_view contents, const std::string& file, doub
 std::optional<TextRefusal> read_xyz_lines(std::string_view contents, std::size_t begin, std::size_t end,
                                           std::size_t columns, double largest, PointCloud& cloud);
 
+/// Lines of points from `begin` to `end`, which are not looked into.
+std::size_t count_xyz_lines(std::string_view contents, std::size_t begin, std::size_t end);
+
 }  // namespace abbe

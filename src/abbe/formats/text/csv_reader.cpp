@@ -256,6 +256,8 @@ std::optional<TextRefusal> CsvRows::read(std::size_t begin, std::size_t end, Csv
   return std::nullopt;
 }
 
+std::size_t CsvRows::count(std::size_t begin, std::size_t end) const { return count_rows(text_, begin, end); }
+
 std::size_t CsvRows::row_offset(std::size_t begin, std::size_t row) const {
   for (std::size_t at = begin; at < text_.size();) {
     const std::size_t start = at;

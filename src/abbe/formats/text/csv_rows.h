@@ -30,6 +30,9 @@ class CsvRows {
   /// @returns what was refused first
   std::optional<TextRefusal> read(std::size_t begin, std::size_t end, CsvTable& table) const;
 
+  /// Rows of a run of lines, which are not looked into.
+  std::size_t count(std::size_t begin, std::size_t end) const;
+
   /// Byte where a row of a run begins that read() gave.
   std::size_t row_offset(std::size_t begin, std::size_t row) const;
 

@@ -3,9 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
-#include "abbe/geometry/parallel_blocks.h"
+#include "abbe/geometry/digest.h"
+#include "abbe/geometry/registration/registration_pass.h"
 #include "abbe/geometry/registration/undetermined_motions.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/singular_values.h"
@@ -41,25 +44,6 @@ Weight weight_at(RegistrationLoss loss, double distance, double scale) {
   return {(1 - square) * (1 - square), (1 - square) * (1 - 5 * square)};
 }
 
-/// Sums over some points; rotations are scaled by the extent, so that all six parameters are lengths.
-struct WeightedSums {
-  Matrix6d hessian = Matrix6d::Zero(), slope = Matrix6d::Zero(), square = Matrix6d::Zero();
-  Vector6d gradient = Vector6d::Zero();
-  double weighted_square = 0, weight = 0;
-  Eigen::Index used = 0, beyond_border = 0;
-
-  void operator+=(const WeightedSums& other) {
-    hessian += other.hessian;
-    slope += other.slope;
-    square += other.square;
-    gradient += other.gradient;
-    weighted_square += other.weighted_square;
-    weight += other.weight;
-    used += other.used;
-    beyond_border += other.beyond_border;
-  }
-};
-
 class Fit {
  public:
   Fit(const Matrix3Xd& points, const ClosestPointFinder& surface, const SmoothSurface& smooth,
@@ -82,7 +66,9 @@ class Fit {
     constexpr Eigen::Index kBlock = ClosestPointFinder::kBlock;
     const std::size_t blocks = static_cast<std::size_t>((points_.cols() + kBlock - 1) / kBlock);
     std::vector<WeightedSums> sums(blocks);
-    for_each_block(blocks, options_.threads, [&](std::size_t block) {
+    RegistrationPass pass{.block_points = kBlock, .sums = sums, .distances = distances_};
+    pass.fingerprint = [&] { return fingerprint(pose, scale); };
+    pass.compute = [&](std::size_t block) {
       const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
       const Eigen::Index count = std::min(kBlock, points_.cols() - first);
       const Matrix3Xd moved = (pose.rotation * points_.middleCols(first, count)).colwise() + pose.translation;
@@ -97,7 +83,8 @@ class Fit {
           add(at, moved.col(i), moved.col(i) - reference(pose), scale, &sums[block]);
         }
       }
-    });
+    };
+    do_pass(pass, options_.work, options_.threads);
     // In the order of the blocks, so that the sum does not depend on the threads.
     WeightedSums all;
     for (const WeightedSums& some : sums) all += some;
@@ -147,6 +134,24 @@ class Fit {
 
  private:
   static constexpr double kNothing = -1;
+
+  /// Of a pass, without the surface, which the caller knows.
+  std::uint64_t fingerprint(const RigidTransform& pose, double scale) {
+    if (!of_points_) {
+      Digest digest;
+      digest.add_text(vector_instructions());
+      digest.add_numbers({points_.data(), static_cast<std::size_t>(points_.size())});
+      of_points_ = digest.value();
+    }
+    Digest digest;
+    digest.add(*of_points_);
+    digest.add_numbers({pose.rotation.data(), 9});
+    digest.add_numbers({pose.translation.data(), 3});
+    digest.add_number(scale);
+    digest.add_number(options_.noise_mm);
+    digest.add(static_cast<std::uint64_t>(options_.loss) * 2 + (options_.adaptive_distance ? 1 : 0));
+    return digest.value();
+  }
 
   Vector6d gradient_of(const Vector3d& direction, const Vector3d& arm) const {
     Vector6d row;
@@ -217,6 +222,7 @@ class Fit {
   std::vector<std::uint32_t> hints_;
   Vector3d middle_;
   double extent_ = 0;
+  std::optional<std::uint64_t> of_points_;
 };
 
 /// Robust standard deviation of the distances at the start; some of very many points tell it.

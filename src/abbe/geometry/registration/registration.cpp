@@ -82,7 +82,8 @@ struct RegistrationTarget::Inside {
     return {.loss = options.loss,
             .adaptive_distance = options.adaptive_distance,
             .noise_mm = options.noise_mm,
-            .threads = options.threads};
+            .threads = options.threads,
+            .work = options.work};
   }
 
   std::vector<RigidTransform> starts(const PointCloud& scan) const {

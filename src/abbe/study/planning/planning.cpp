@@ -10,6 +10,8 @@
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/cross_products.h"
+#include "abbe/geometry/digest.h"
 #include "abbe/study/campaign.h"
 #include "abbe/study/model.h"
 #include "abbe/study/planning/planning_conditions.h"
@@ -17,6 +19,7 @@
 #include "abbe/study/planning/planning_schedule.h"
 #include "abbe/study/planning/planning_setting.h"
 #include "abbe/study/random_poses.h"
+#include "abbe/study/results_of_items.h"
 
 namespace abbe {
 namespace {
@@ -109,7 +112,8 @@ void check_costs(const Study& study) {
 }
 
 StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ConditionsOfANumber& at,
-                          const ShareCallback& progress, const std::stop_token& stop) {
+                          const ShareCallback& progress, const JobOptions& job) {
+  const std::stop_token& stop = job.stop;
   progress(0);
   const PlanningStudy& plan = *study.planning;
   const std::vector<std::size_t>& conditions = at.conditions;
@@ -268,10 +272,10 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
   say_what_is_enough(plan, result);
   progress(0.85);
   if (model.sights_stand_anywhere() && !model.has_given_readings() && !model.states().any()) {
-    compare_with_grids(model, *space, predictions, result, stop);
+    compare_with_grids(model, *space, predictions, result, job);
   }
   if (model.sights_stand_anywhere() && !model.has_given_readings() && model.states().any()) {
-    compare_with_plain_states(model, *space, predictions, result, stop);
+    compare_with_plain_states(model, *space, predictions, result, job);
   }
   result.not_identified = find_not_in_model(study, model.errors());
   progress(1);
@@ -292,30 +296,67 @@ Study with_setups(const Study& study, std::size_t subset) {
   return part;
 }
 
+/// Of everything on which the best plans of combinations depend: costs, and the rows of some candidates.
+std::uint64_t fingerprint_of_choice(const Study& study, const ConditionsOfANumber& conditions) {
+  const PlanningStudy& plan = *study.planning;
+  const PlanningSetting setting =
+      planning_setting(study, conditions.conditions, static_cast<std::size_t>(plan.candidates));
+  Digest digest;
+  digest.add_text(vector_instructions());
+  digest.add(study.seed);
+  digest.add(static_cast<std::uint64_t>(plan.readings));
+  digest.add(static_cast<std::uint64_t>(plan.goal));
+  for (const double value : {plan.time, plan.reading, plan.settle}) digest.add_number(value);
+  for (const Setup& setup : study.setups) {
+    for (const double value : {plan.set_up_of(setup.name), plan.settle_of(setup.name), plan.reading_of(setup.name)}) {
+      digest.add_number(value);
+    }
+  }
+  digest.add_number(measuring_time(study, setting.model->states(), setting.candidates.readings));
+  for (const std::size_t condition : conditions.conditions) digest.add(condition);
+  const auto& rows = setting.candidates.rows.rows;
+  digest.add_numbers({rows.data(), static_cast<std::size_t>(rows.size())});
+  digest.add_numbers({setting.predictions.data(), static_cast<std::size_t>(setting.predictions.size())});
+  return digest.value();
+}
+
 /// Which instruments are worth setting up: every combination of them is planned, and the one counts whose predicted
 /// uncertainty, with the weak prior for what it does not see, is smallest.
 std::vector<SetupChoice> try_combinations(const Study& study, const ConditionsOfANumber& conditions,
-                                          const ShareCallback& progress, const std::stop_token& stop) {
+                                          const ShareCallback& progress, const JobOptions& job) {
   std::vector<SetupChoice> choices;
   const std::size_t combinations = (std::size_t{1} << study.setups.size()) - 1;
-  for (std::size_t subset = 1; subset <= combinations; ++subset) {
-    const Study part = with_setups(study, subset);
-    SetupChoice choice{subset, {}, 0, 0, 0, false};
+  std::size_t done = 0;
+  NumberedItems items{.name = "combinations of set-ups", .count = combinations, .threads = study.threads};
+  // Each has all threads.
+  items.in_parallel = false;
+  items.fingerprint = [&] { return fingerprint_of_choice(study, conditions); };
+  items.compute = [&](std::size_t item) -> ItemResult {
+    const Study part = with_setups(study, item + 1);
     double set_up = 0;
-    for (const Setup& setup : part.setups) {
-      choice.setups.push_back(setup.name);
-      set_up += part.planning->set_up_of(setup.name);
-    }
+    for (const Setup& setup : part.setups) set_up += part.planning->set_up_of(setup.name);
+    ItemResult result;
     if (set_up < part.planning->time) {
-      const auto within = [&stop](double) { stop_if_asked(stop); };
-      const StudyPlan plan = plan_all_setups(part, PlanningDepth::choice, conditions, within, stop);
-      choice.possible = plan.plan.status == PlanningStatus::done;
-      choice.readings = plan.readings.size();
-      choice.time = plan.time;
-      choice.with_prior = plan.with_prior;
+      const auto within = [&job](double) { stop_if_asked(job.stop); };
+      const StudyPlan plan = plan_all_setups(part, PlanningDepth::choice, conditions, within, {.stop = job.stop});
+      result.numbers = {plan.plan.status == PlanningStatus::done ? 1.0 : 0.0, static_cast<double>(plan.readings.size()),
+                        plan.time, plan.with_prior};
+    }
+    progress(0.5 * static_cast<double>(++done) / static_cast<double>(combinations));
+    return result;
+  };
+  const std::vector<ItemResult> results = results_of_items(job.work, items);
+  for (std::size_t subset = 1; subset <= combinations; ++subset) {
+    SetupChoice choice{subset, {}, 0, 0, 0, false};
+    for (const Setup& setup : with_setups(study, subset).setups) choice.setups.push_back(setup.name);
+    const std::vector<double>& found = results[subset - 1].numbers;
+    if (!found.empty()) {
+      choice.possible = found[0] != 0;
+      choice.readings = static_cast<std::size_t>(found[1]);
+      choice.time = found[2];
+      choice.with_prior = found[3];
     }
     choices.push_back(std::move(choice));
-    progress(0.5 * static_cast<double>(subset) / static_cast<double>(combinations));
   }
   return choices;
 }
@@ -364,11 +405,11 @@ StudyPlan plan_study(const Study& study, const JobOptions& options) {
     }
   }
   if (!set_up_costs || study.planning->time <= 0 || setups < 2 || setups > kMostTogether) {
-    StudyPlan plan = plan_all_setups(study, PlanningDepth::whole, conditions, progress, options.stop);
+    StudyPlan plan = plan_all_setups(study, PlanningDepth::whole, conditions, progress, options);
     plan.condition_curve = std::move(curve);
     return plan;
   }
-  std::vector<SetupChoice> choices = try_combinations(study, conditions, progress, options.stop);
+  std::vector<SetupChoice> choices = try_combinations(study, conditions, progress, options);
   const auto worse = [](const SetupChoice& a, const SetupChoice& b) {
     return a.possible != b.possible ? b.possible : a.with_prior > b.with_prior;
   };
@@ -378,8 +419,7 @@ StudyPlan plan_study(const Study& study, const JobOptions& options) {
     if ((best.subset >> s & 1) != 0) kept.push_back(s);
   }
   const auto rest = [&](double share) { progress(0.5 + 0.5 * share); };
-  StudyPlan plan =
-      plan_all_setups(with_setups(study, best.subset), PlanningDepth::whole, conditions, rest, options.stop);
+  StudyPlan plan = plan_all_setups(with_setups(study, best.subset), PlanningDepth::whole, conditions, rest, options);
   plan.condition_curve = std::move(curve);
   for (CandidateReading& reading : plan.readings) reading.setup = kept[reading.setup];
   plan.combinations = std::move(choices);

@@ -6,9 +6,12 @@
 #include <utility>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/cross_products.h"
+#include "abbe/geometry/digest.h"
 #include "abbe/study/planning/planning.h"
 #include "abbe/study/planning/planning_drift.h"
 #include "abbe/study/planning/planning_schedule.h"
+#include "abbe/study/results_of_items.h"
 
 namespace abbe {
 namespace {
@@ -49,12 +52,12 @@ class GridSearch {
  public:
   /// @param conditions  at which every grid is gone through
   GridSearch(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
-             StudyPlan& result, const std::stop_token& stop, std::vector<std::size_t> conditions = {0})
+             StudyPlan& result, const JobOptions& job, std::vector<std::size_t> conditions = {0})
       : model_(model),
         space_(space),
         predictions_(predictions),
         result_(result),
-        stop_(stop),
+        job_(job),
         conditions_(std::move(conditions)),
         ranges_(model.study().planning->axes) {
     const double all = static_cast<double>(result.candidates + result.hidden);
@@ -85,21 +88,15 @@ class GridSearch {
     struct Tried {
       double with_prior;
       const Grid* grid;
-      PlanningModel::Candidates readings;
     };
     std::vector<Grid> grids;
     const std::size_t at_each = number / conditions_.size();
     add_factorial(at_each, grids);
     add_composite(at_each, grids);
     std::vector<Tried> tried;
-    for (const Grid& grid : grids) {
-      stop_if_asked(stop_);
-      PlanningModel::Candidates readings = readings_of(grid, conditions_);
-      const std::size_t count = readings.readings.size();
-      if (count < number || static_cast<double>(count) > kMostOfTheNumber * static_cast<double>(number)) continue;
-      if (!take(readings)) continue;
-      const double with_prior = uncertainty_with_prior(model_, readings.rows.rows, predictions_);
-      tried.push_back({with_prior, &grid, std::move(readings)});
+    const std::vector<ItemResult> all = results_of_items(job_.work, grid_items(grids, number));
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+      if (!all[i].numbers.empty()) tried.push_back({all[i].numbers.front(), &grids[i]});
     }
     std::stable_sort(tried.begin(), tried.end(),
                      [](const Tried& a, const Tried& b) { return a.with_prior < b.with_prior; });
@@ -107,8 +104,18 @@ class GridSearch {
     best.tried = tried.size();
     const bool counts = !model_.states().any();
     if (counts) result_.grids_tried += tried.size();
-    for (std::size_t k = 0; k < std::min(tried.size(), kLookedAt); ++k) {
-      const GridPoint point = evaluate(*tried[k].grid, tried[k].readings, tried[k].with_prior);
+    if (tried.size() > kLookedAt) tried.resize(kLookedAt);
+    NumberedItems looked_at{.name = "best grids", .count = tried.size(), .threads = model_.study().threads};
+    looked_at.fingerprint = [&] {
+      Digest digest;
+      digest.add(fingerprint(grids, number));
+      for (const Tried& one : tried) digest.add_number(one.with_prior);
+      return digest.value();
+    };
+    looked_at.compute = [&](std::size_t k) { return evaluated(*tried[k].grid); };
+    const std::vector<ItemResult> found = results_of_items(job_.work, looked_at);
+    for (std::size_t k = 0; k < tried.size(); ++k) {
+      const GridPoint point = point_of(*tried[k].grid, tried[k].with_prior, found[k]);
       if (!best.any) best.any = point;
       if (!point.value.determined) continue;
       if (!best.determined || point.value.uncertainty < best.determined->value.uncertainty) best.determined = point;
@@ -117,6 +124,42 @@ class GridSearch {
         result_.equal_grid = point;
     }
     return best;
+  }
+
+  /// What all grids of a number are worth with the prior; no number where a grid has too few readings or too many.
+  NumberedItems grid_items(const std::vector<Grid>& grids, std::size_t number) const {
+    NumberedItems items{.name = "grids", .count = grids.size(), .threads = model_.study().threads};
+    items.fingerprint = [this, &grids, number] { return fingerprint(grids, number); };
+    items.compute = [this, &grids, number](std::size_t i) -> ItemResult {
+      stop_if_asked(job_.stop);
+      PlanningModel::Candidates readings = readings_of(grids[i], conditions_);
+      const std::size_t count = readings.readings.size();
+      if (count < number || static_cast<double>(count) > kMostOfTheNumber * static_cast<double>(number)) return {};
+      if (!take(readings)) return {};
+      return {{uncertainty_with_prior(model_, readings.rows.rows, predictions_)}};
+    };
+    return items;
+  }
+
+  /// Of the grids, of what is predicted, and of the model, which shows in the rows of the first grid.
+  std::uint64_t fingerprint(const std::vector<Grid>& grids, std::size_t number) const {
+    Digest digest;
+    const auto add_matrix = [&digest](const auto& matrix) {
+      digest.add_numbers({matrix.data(), static_cast<std::size_t>(matrix.size())});
+    };
+    digest.add_text(vector_instructions());
+    digest.add(number);
+    for (const std::size_t condition : conditions_) digest.add(condition);
+    for (const Grid& grid : grids) {
+      for (const std::vector<double>& axis : grid.poses.axis) digest.add_numbers(axis);
+      for (const std::size_t sight : grid.sight) digest.add(sight);
+    }
+    add_matrix(predictions_);
+    add_matrix(space_.estimates_from_seen());
+    add_matrix(model_.known());
+    add_matrix(model_.weak_prior());
+    if (!grids.empty()) add_matrix(readings_of(grids.front(), conditions_).rows.rows);
+    return digest.value();
   }
 
   PlanningModel::Candidates readings_of(const Grid& grid, const std::vector<std::size_t>& conditions) const {
@@ -138,17 +181,29 @@ class GridSearch {
     return true;
   }
 
-  GridPoint evaluate(const Grid& grid, const PlanningModel::Candidates& readings, double with_prior) const {
+  /// Numbers of readings and open directions, the uncertainty if everything is determined, and names of open errors.
+  ItemResult evaluated(const Grid& grid) const {
+    stop_if_asked(job_.stop);
+    PlanningModel::Candidates readings = readings_of(grid, conditions_);
+    take(readings);
     const PlanValue value = value_of(space_, readings.rows, predictions_);
+    const std::size_t open = space_.dimension() - value.rank;
+    ItemResult result{{static_cast<double>(readings.readings.size()), static_cast<double>(open)}};
+    if (value.determined)
+      result.numbers.push_back(std::sqrt(value.variance / (static_cast<double>(predictions_.rows()) / 3)));
+    if (open > 0) result.text = open_errors(model_, space_, readings.rows.rows, value.rank);
+    return result;
+  }
+
+  static GridPoint point_of(const Grid& grid, double with_prior, const ItemResult& found) {
     GridPoint point;
     point.words = grid.words;
-    point.value.readings = readings.readings.size();
-    point.value.determined = value.determined;
+    point.value.readings = static_cast<std::size_t>(found.numbers.at(0));
+    point.open = static_cast<std::size_t>(found.numbers.at(1));
+    point.value.determined = found.numbers.size() > 2;
+    if (point.value.determined) point.value.uncertainty = found.numbers[2];
     point.value.with_prior = with_prior;
-    if (value.determined)
-      point.value.uncertainty = std::sqrt(value.variance / (static_cast<double>(predictions_.rows()) / 3));
-    point.open = space_.dimension() - value.rank;
-    if (point.open > 0) point.open_words = open_errors(model_, space_, readings.rows.rows, value.rank);
+    point.open_words = found.text;
     return point;
   }
 
@@ -293,7 +348,7 @@ class GridSearch {
   const PlanningSpace& space_;
   const Eigen::MatrixXd& predictions_;
   StudyPlan& result_;
-  std::stop_token stop_;
+  const JobOptions& job_;
   std::vector<std::size_t> conditions_;
   const std::vector<AxisRange>& ranges_;
   double visible_ = 1;
@@ -346,14 +401,14 @@ std::vector<std::size_t> spread_conditions(const PlannedStates& states) {
 }  // namespace
 
 void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
-                        StudyPlan& result, const std::stop_token& stop) {
-  GridSearch(model, space, predictions, result, stop).run();
+                        StudyPlan& result, const JobOptions& job) {
+  GridSearch(model, space, predictions, result, job).run();
 }
 
 void compare_with_plain_states(const PlanningModel& model, const PlanningSpace& space,
-                               const Eigen::MatrixXd& predictions, StudyPlan& result, const std::stop_token& stop) {
+                               const Eigen::MatrixXd& predictions, StudyPlan& result, const JobOptions& job) {
   const auto grids_at = [&](const std::vector<std::size_t>& conditions) {
-    return GridSearch(model, space, predictions, result, stop, conditions).of_same_number();
+    return GridSearch(model, space, predictions, result, job, conditions).of_same_number();
   };
   const auto [lowest, highest] = ends_of_states(model.states());
   if (lowest != highest) {

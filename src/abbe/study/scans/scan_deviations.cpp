@@ -12,6 +12,7 @@
 #include "abbe/report/drawings/surface_picture.h"
 #include "abbe/report/evaluations/deviation_report.h"
 #include "abbe/report/words/evaluation_text.h"
+#include "abbe/study/scans/closest_points.h"
 #include "abbe/study/scans/deviation_steps.h"
 #include "abbe/study/scans/scan_of_part.h"
 
@@ -84,26 +85,26 @@ double middle_amount(std::vector<double> distance) {
 
 }  // namespace
 
-ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::stop_token& stop) {
+ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOptions& job) {
   check_deviation_request(request);
   check_scan_and_part(request.scan, request.scan_file, request.part, request.part_file);
   const MeshFile& part = request.part;
   const ClosestPointFinder surface(part.mesh, request.threads);
-  stop_if_asked(stop);
+  const SurfaceFaces faces = faces_of_part(request);
+  stop_if_asked(job.stop);
   ScanDeviations result;
-  result.compared = compare_scan(surface, moved_cloud(request.scan.cloud, request.pose.transform).points,
-                                 {.tolerance = request.tolerance,
-                                  .largest_mm = request.largest_mm,
-                                  .faces = faces_of_part(request),
-                                  .threads = request.threads,
-                                  .stop = stop});
+  const Eigen::Matrix3Xd points = moved_cloud(request.scan.cloud, request.pose.transform).points;
+  std::optional<std::vector<SurfacePoint>> closest = closest_points(surface, part.mesh, points, request.threads, job);
+  if (!closest) return result;
+  result.compared = compare_scan(std::move(*closest), points,
+                                 {.tolerance = request.tolerance, .largest_mm = request.largest_mm, .faces = faces});
   const DeviationRequest asked = asked_of_report(request);
   result.report = deviation_report(asked, request.scan, part, result.compared);
   if (result.has_points()) note_scan_elsewhere(part, middle_amount(result.compared.counted_mm), result);
   apply_tolerances(request.tolerances, result.report);
   result.colour_mm = deviation_colour_range(asked, result.compared);
   if (request.page) {
-    stop_if_asked(stop);
+    stop_if_asked(job.stop);
     result.report.page = deviation_page(part.mesh, result.compared.closest, result.compared.deviation, result.colour_mm,
                                         request.threads);
   }

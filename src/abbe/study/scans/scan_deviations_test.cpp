@@ -91,7 +91,7 @@ TEST(ScanDeviationsOfARequest, AreJudgedByTheTolerancesOfTheRequest) {
 TEST(ScanDeviationsOfARequest, StopWhenAsked) {
   std::stop_source source;
   source.request_stop();
-  EXPECT_THROW(find_deviations(bracket_deviations(), source.get_token()), Stopped);
+  EXPECT_THROW(find_deviations(bracket_deviations(), {.stop = source.get_token()}), Stopped);
 }
 
 TEST(ScanDeviationsOfARequest, WhatCannotBeComparedIsSaid) {

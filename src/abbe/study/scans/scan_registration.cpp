@@ -13,6 +13,7 @@
 #include "abbe/report/report.h"
 #include "abbe/report/words/geometry_facts.h"
 #include "abbe/report/words/registration_words.h"
+#include "abbe/study/scans/closest_points.h"
 #include "abbe/study/scans/scan_of_part.h"
 
 namespace abbe {
@@ -26,12 +27,16 @@ ScanRegistration register_scan(ScanRegistrationRequest request, const JobOptions
   result.scan = std::move(request.scan);
   result.part = std::move(request.part);
   result.threads = request.options.threads;
+  request.options.work = with_mesh(options.work, result.part.mesh);
   const RegistrationTarget target(result.part.mesh, request.options);
   result.found = target.register_scan(result.scan.cloud, stoppable_progress(options));
   if (request.compare && has_pose(result.found)) {
-    result.compared = compare_scan(
-        target.surface(), registered_scan(result).points,
-        {.largest_mm = farthest_shown_mm(result.part.mesh), .threads = request.options.threads, .stop = options.stop});
+    const Eigen::Matrix3Xd points = registered_scan(result).points;
+    std::optional<std::vector<SurfacePoint>> closest =
+        closest_points(target.surface(), result.part.mesh, points, request.options.threads,
+                       {.stop = options.stop, .work = options.work});
+    if (!closest) return result;
+    result.compared = compare_scan(std::move(*closest), points, {.largest_mm = farthest_shown_mm(result.part.mesh)});
   }
   return result;
 }

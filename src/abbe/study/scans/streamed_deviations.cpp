@@ -3,38 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
-#include <memory>
-#include <optional>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
-#include "abbe/formats/files/checkpoint.h"
 #include "abbe/formats/files/file_stamp.h"
 #include "abbe/formats/files/text_file.h"
-#include "abbe/formats/files/unfinished_output.h"
 #include "abbe/formats/shapes/point_cloud_blocks.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/digest.h"
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/report/drawings/deviation_colours.h"
 #include "abbe/report/drawings/surface_picture.h"
 #include "abbe/report/evaluations/deviation_report.h"
 #include "abbe/report/words/evaluation_text.h"
+#include "abbe/study/scans/closest_points.h"
 #include "abbe/study/scans/deviation_steps.h"
 #include "abbe/study/scans/scan_of_part.h"
+#include "abbe/study/scans/scan_pieces.h"
 #include "abbe/verify/parts/deviation_sums.h"
 
 namespace abbe {
 namespace {
-
-/// Number that differs where the surfaces differ.
-std::uint64_t mark_of_mesh(const TriangleMesh& mesh) {
-  Digest digest;
-  for (const double value : mesh.vertices.reshaped()) digest.add_number(value);
-  for (const std::uint32_t vertex : mesh.triangles.reshaped()) digest.add(vertex);
-  return digest.value();
-}
 
 std::string options_text(const ScanDeviationsRequest& request, const PointCloudOptions& scan) {
   std::string text =
@@ -45,64 +37,53 @@ std::string options_text(const ScanDeviationsRequest& request, const PointCloudO
   if (scan.unit) text += fmt::format(", unit {}", file_length_name(*scan.unit));
   for (const auto& [own, theirs] : scan.mapping.columns) text += fmt::format(", column {}={}", own, theirs);
   for (const std::string& ignored : scan.mapping.ignore) text += ", ignored " + ignored;
-  // A name of a column is free text.
-  std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
 
-/// Everything on which the sums depend.
-CheckpointFacts facts_of_job(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
-                             const StreamingOptions& options, const FileStamp& stamp) {
-  const RigidTransform& pose = request.pose.transform;
-  return {{"job", "deviate 1"},
-          {"scan", fmt::format("{} bytes, changed {}.{:09}", stamp.bytes, stamp.seconds, stamp.nanoseconds)},
-          {"part", fmt::format("{} triangles, {:016x}", request.part.mesh.size(), mark_of_mesh(request.part.mesh))},
-          {"transform",
-           fmt::format("{} {}", fmt::join(pose.rotation.reshaped(), " "), fmt::join(pose.translation.reshaped(), " "))},
-          {"options", options_text(request, scan)},
-          {"shown", fmt::format("{}", options.shown)}};
-}
-
-/// The reading of one scan, block by block.
+/// The sums of one scan, which are made in pieces.
 class StreamJob {
  public:
   StreamJob(const ScanDeviationsRequest& request, const PointCloudOptions& scan, const StreamingOptions& options,
             const JobOptions& job)
       : request_(request),
+        scan_(scan),
         options_(options),
         job_(job),
         stamp_(file_stamp(request.scan_file)),
         file_(request.scan_file),
         blocks_(file_.text(), request.scan_file, scan),
+        pieces_(blocks_, options.block),
         surface_(request.part.mesh, request.threads),
         faces_(faces_of_part(request)),
         statistics_{request.tolerance, request.largest_mm, faces_.face_of_triangle, faces_.count()},
         sums_(statistics_, options.shown),
-        at_(blocks_.begin()) {
-    if (options.output.empty()) return;
-    unfinished_ = std::make_shared<Checkpoint>(options.output, facts_of_job(request, scan, options, stamp_));
-    if (!unfinished_->found().empty()) go_on();
-  }
+        states_(pieces_.count()),
+        places_(pieces_.count()) {}
 
-  void read() {
-    using Clock = std::chrono::steady_clock;
-    const std::size_t from = at_;
-    auto saved = Clock::now();
-    while (at_ < blocks_.end()) {
-      if (job_.stop.stop_requested()) {
-        save();
-        throw Stopped();
-      }
-      next_block();
-      if (job_.progress) job_.progress(at_ - from, blocks_.end() - from);
-      if (std::chrono::duration<double>(Clock::now() - saved).count() < options_.checkpoint_seconds) continue;
-      save();
-      saved = Clock::now();
-    }
-    require_unchanged();
-    // What is computed now is written to the disk later, which may fail.
-    save();
-    if (sums_.points() > 0) return;
+  /// @returns whether all sums are here: of several processes, the first one has them
+  bool read() {
+    NumberedWork work{.name = "comparison of the scan", .blocks = pieces_.count(), .threads = request_.threads};
+    // The points of a piece have all threads.
+    work.in_parallel = false;
+    work.fingerprint = [this] { return fingerprint(); };
+    work.compute = [this](std::size_t piece) { compare(piece); };
+    work.pack = [this](std::size_t piece, std::vector<std::byte>& bytes) {
+      const auto state = std::as_bytes(std::span(states_[piece]));
+      bytes.insert(bytes.end(), state.begin(), state.end());
+    };
+    work.unpack = [this](std::size_t piece, std::span<const std::byte> bytes) {
+      states_[piece].assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    work.finished = [this](std::size_t piece) {
+      read_bytes_ += pieces_.end(piece) - pieces_.begin(piece);
+      if (job_.progress) job_.progress(read_bytes_, blocks_.end() - blocks_.begin());
+    };
+    work.reduce = [this](std::size_t piece) { reduce(piece); };
+    do_work(job_.work, work);
+    require_unchanged(blocks_.end(), sums_.points() + not_finite_);
+    if (reduced_ < pieces_.count()) return false;
+    require_places();
+    if (sums_.points() > 0) return true;
     throw InputError({.file = request_.scan_file},
                      not_finite_ > 0 ? fmt::format("none of the {} points has coordinates", not_finite_)
                                      : std::string("there is no point"),
@@ -112,71 +93,103 @@ class StreamJob {
   ScanDeviations result();
 
  private:
-  void require_unchanged() const {
-    if (file_stamp(request_.scan_file) == stamp_) return;
-    throw InputError(
-        {.file = request_.scan_file},
-        fmt::format("was changed while it was read, at byte {}, behind point {}", at_, sums_.points() + not_finite_),
-        "a file that nobody changes meanwhile");
-  }
+  /// What stands in front of the state of a piece.
+  struct Place {
+    std::uint64_t first = 0, points = 0, not_finite = 0;
+  };
 
-  void next_block() {
-    require_unchanged();
-    const std::size_t end = blocks_.block_end(at_, options_.block);
-    const CloudBlock block = blocks_.read(at_, end, request_.threads);
+  /// Of everything on which the sums depend.
+  std::uint64_t fingerprint() const {
     const RigidTransform& pose = request_.pose.transform;
-    const Eigen::Matrix3Xd points = (pose.rotation * block.points).colwise() + pose.translation;
-    if (points.cols() > 0) {
-      sums_.add(points, surface_.closest(points, request_.threads, job_.stop), request_.threads);
+    Digest digest;
+    digest.add_text("deviations 1");
+    digest.add_text(vector_instructions());
+    for (const std::int64_t number : {stamp_.seconds, stamp_.nanoseconds})
+      digest.add(static_cast<std::uint64_t>(number));
+    for (const std::uint64_t number : {stamp_.bytes, fingerprint_of_mesh(request_.part.mesh),
+                                       std::uint64_t{pieces_.points_of_piece()}, std::uint64_t{options_.shown}}) {
+      digest.add(number);
     }
-    not_finite_ += block.not_finite;
-    at_ = end;
-    file_.forget(end);
+    for (const double value : pose.rotation.reshaped()) digest.add_number(value);
+    for (const double value : pose.translation) digest.add_number(value);
+    digest.add_text(options_text(request_, scan_));
+    return digest.value();
   }
 
-  void save() {
-    if (!unfinished_) return;
-    std::string state(2 * sizeof(std::uint64_t), '\0');
-    const std::uint64_t place[2] = {at_, not_finite_};
-    std::memcpy(state.data(), place, sizeof place);
-    unfinished_->save(state + sums_.state());
+  void require_unchanged(std::size_t at, std::uint64_t point) const {
+    if (file_stamp(request_.scan_file) == stamp_) return;
+    throw InputError({.file = request_.scan_file},
+                     fmt::format("was changed while it was read, at byte {}, behind point {}", at, point),
+                     "a file that nobody changes meanwhile");
   }
 
-  void go_on() {
-    const std::string& state = unfinished_->found();
-    std::uint64_t place[2] = {0, 0};
-    const auto refuse = [&] {
-      throw InputError({.file = unfinished_name(options_.output).string()}, "is damaged",
-                       "a checkpoint of this job; or remove the file, to begin anew");
-    };
-    if (state.size() < sizeof place) refuse();
-    std::memcpy(place, state.data(), sizeof place);
-    if (place[0] < blocks_.begin() || place[0] > blocks_.end()) refuse();
+  void compare(std::size_t piece) {
+    Place place{.first = pieces_.first_point(piece, request_.threads)};
+    DeviationSums own(statistics_, options_.shown);
+    const RigidTransform& pose = request_.pose.transform;
+    for (std::size_t at = pieces_.begin(piece); at < pieces_.end(piece);) {
+      stop_if_asked(job_.stop);
+      require_unchanged(at, place.first + own.points());
+      const std::size_t end = std::min(blocks_.block_end(at, options_.block), pieces_.end(piece));
+      const CloudBlock block = blocks_.read(at, end, request_.threads);
+      const Eigen::Matrix3Xd points = (pose.rotation * block.points).colwise() + pose.translation;
+      if (points.cols() > 0) {
+        own.add(place.first + own.points(), points, surface_.closest(points, request_.threads, job_.stop),
+                request_.threads);
+      }
+      place.not_finite += block.not_finite;
+      at = end;
+      file_.forget(end);
+    }
+    place.points = own.points();
+    pieces_.set_points(piece, place.points);
+    const std::lock_guard lock(mutex_);
+    states_[piece].assign(reinterpret_cast<const char*>(&place), sizeof place);
+    states_[piece] += own.state(sums_.sample());
+  }
+
+  void reduce(std::size_t piece) {
+    const std::string state = std::exchange(states_[piece], {});
+    Place& place = places_[piece];
+    if (state.size() < sizeof place) throw WorkError("the sums of a piece of the scan are cut off");
+    std::memcpy(&place, state.data(), sizeof place);
+    pieces_.set_points(piece, place.points);
+    const std::lock_guard lock(mutex_);
     try {
-      sums_.set_state(std::string_view(state).substr(sizeof place));
-    } catch (const std::invalid_argument&) {
-      refuse();
+      sums_.add_state(std::string_view(state).substr(sizeof place));
+    } catch (const std::invalid_argument& error) {
+      throw WorkError(error.what());
     }
-    at_ = place[0];
-    not_finite_ = place[1];
-    if (!options_.tell) return;
-    options_.tell(fmt::format("{}: goes on behind point {}", unfinished_name(options_.output).string(),
-                              sums_.points() + not_finite_));
+    not_finite_ += place.not_finite;
+    ++reduced_;
+  }
+
+  /// The points of a piece have the right numbers only if those of all pieces in front were counted right.
+  void require_places() const {
+    std::uint64_t next = 0;
+    for (const Place& place : places_) {
+      if (place.first != next) throw WorkError("the points of the scan were counted in two ways");
+      next += place.points;
+    }
   }
 
   const ScanDeviationsRequest& request_;
+  const PointCloudOptions& scan_;
   const StreamingOptions& options_;
   const JobOptions& job_;
   FileStamp stamp_;
   MappedFile file_;
   PointCloudBlocks blocks_;
+  ScanPieces pieces_;
   ClosestPointFinder surface_;
   SurfaceFaces faces_;
   SurfaceDeviationOptions statistics_;
+  std::mutex mutex_;  // of the sums: a piece is compared while others are added
   DeviationSums sums_;
-  std::size_t at_;
+  std::vector<std::string> states_;  // of pieces that were not added yet
+  std::vector<Place> places_;
   std::uint64_t not_finite_ = 0;
-  std::shared_ptr<Checkpoint> unfinished_;
+  std::size_t read_bytes_ = 0, reduced_ = 0;
 };
 
 /// The points that are shown, on the part.
@@ -232,7 +245,6 @@ ScanDeviations StreamJob::result() {
     state_all_points(sums_.points(), result.compared.deviation.all.sample.count, histogram, result.colour_mm,
                      result.report.page);
   }
-  result.unfinished = unfinished_;
   return result;
 }
 
@@ -258,15 +270,14 @@ ScanDeviations deviations_of_file(ScanDeviationsRequest request, const PointClou
                                   const StreamingOptions& options, const JobOptions& job) {
   if (!is_read_in_blocks(request.scan_file, options.above)) {
     request.scan = read_point_cloud(request.scan_file, scan);
-    return find_deviations(request, job.stop);
+    return find_deviations(request, job);
   }
   check_deviation_request(request);
   if (request.part.mesh.size() == 0) {
     throw InputError({.file = request.part_file}, "there is no triangle", "the surface of a part");
   }
   StreamJob stream(request, scan, options, job);
-  stream.read();
-  return stream.result();
+  return stream.read() ? stream.result() : ScanDeviations();
 }
 
 }  // namespace abbe

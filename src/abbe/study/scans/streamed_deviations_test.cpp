@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -13,8 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "abbe/formats/files/checkpoint.h"
-#include "abbe/formats/files/unfinished_output.h"
+#include "abbe/formats/files/work_checkpoint.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
@@ -81,6 +82,11 @@ class StreamedDeviations : public testing::Test {
     request_.scan_file = file;
     request_.scan = read_point_cloud(file);
     return find_deviations(request_);
+  }
+  static JobOptions kept_in(WorkCheckpoint& checkpoint) {
+    JobOptions job;
+    job.work = [&](const NumberedWork& work) { checkpoint.work(work, {}); };
+    return job;
   }
   static std::string bytes_of(const ScanDeviations& result) {
     std::string text = evaluation_json(result.report).dump() + result.report.page.dump();
@@ -150,14 +156,14 @@ TEST_F(StreamedDeviations, HaveTheSameBytesForAllThreadsAndBlocks) {
 TEST_F(StreamedDeviations, GoOnAfterAKillWithTheSameBytes) {
   const std::string file = ply();
   options_.shown = 150;
+  options_.block = 7;
   const std::string expected = bytes_of(in_blocks(file));
-  options_.output = (folder_ / "out").string();
-  options_.checkpoint_seconds = 0;
   request_.threads = 1;
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    JobOptions job;
+    WorkCheckpoint checkpoint(folder_ / "out", {.after_s = 0, .remaining_s = 0});
+    JobOptions job = kept_in(checkpoint);
     job.progress = [](std::size_t done, std::size_t total) {
       if (done > total / 2) ::kill(::getpid(), SIGKILL);
     };
@@ -167,32 +173,80 @@ TEST_F(StreamedDeviations, GoOnAfterAKillWithTheSameBytes) {
   int status = 0;
   ::waitpid(child, &status, 0);
   ASSERT_TRUE(WIFSIGNALED(status));
-  const fs::path left = unfinished_name(options_.output);
-  ASSERT_GT(fs::file_size(left), 100U);
-  // Other options are refused, and the checkpoint stays.
-  request_.largest_mm = 0.2;
-  EXPECT_THAT(message_of([&] { in_blocks(file); }), HasSubstr("is the checkpoint of another job: it has 'options: "));
-  request_.largest_mm = 0.3;
-  std::vector<std::string> told;
-  options_.tell = [&](const std::string& text) { told.push_back(text); };
-  const ScanDeviations result = in_blocks(file);
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_THAT(told[0], HasSubstr("goes on behind point "));
-  EXPECT_EQ(bytes_of(result), expected);
-  // While it works nobody else may.
-  EXPECT_THAT(message_of([&] { in_blocks(file); }), HasSubstr("another process works on this output"));
-  result.unfinished->remove();
-  EXPECT_FALSE(fs::exists(left));
+  std::string told;
+  const auto tell = [&](const std::string& sentence) { told += sentence; };
+  WorkCheckpoint checkpoint(folder_ / "out", {.after_s = 0, .remaining_s = 0, .tell = tell});
+  ASSERT_GT(fs::file_size(checkpoint.path()), 100U);
+  EXPECT_EQ(bytes_of(in_blocks(file, kept_in(checkpoint))), expected);
+  EXPECT_THAT(told, HasSubstr("blocks of the comparison of the scan are taken from"));
+  checkpoint.remove();
+  EXPECT_FALSE(fs::exists(checkpoint.path()));
 }
 
-TEST_F(StreamedDeviations, StopWithACheckpoint) {
-  options_.output = (folder_ / "out").string();
+TEST_F(StreamedDeviations, DoNotUseSumsOfOtherOptionsOrFiles) {
+  const std::string file = ply();
+  std::vector<std::uint64_t> fingerprints;
+  JobOptions job;
+  job.work = [&](const NumberedWork& work) {
+    fingerprints.push_back(work.fingerprint());
+    work_in_threads(work);
+  };
+  in_blocks(file, job);
+  request_.largest_mm = 0.2;
+  in_blocks(file, job);
+  request_.pose.transform.translation.x() += 1e-6;
+  in_blocks(file, job);
+  request_.part.mesh.vertices(0, 0) += 1e-6;
+  in_blocks(file, job);
+  fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(1));
+  in_blocks(file, job);
+  options_.shown = 10;
+  in_blocks(file, job);
+  std::sort(fingerprints.begin(), fingerprints.end());
+  EXPECT_EQ(std::unique(fingerprints.begin(), fingerprints.end()), fingerprints.end());
+  EXPECT_EQ(fingerprints.size(), 6U);
+}
+
+// What another process leaves out of its pieces has been pushed out by pieces that it has sent before.
+TEST_F(StreamedDeviations, OfSeveralProcessesHaveTheSameBytes) {
+  options_.shown = 150;
+  options_.block = 7;
+  for (const std::string& file : {ply(), xyz(), pcd(3)}) {
+    const std::string expected = bytes_of(in_blocks(file));
+    std::vector<std::pair<std::size_t, std::vector<std::byte>>> sent;
+    JobOptions other;
+    other.work = [&](const NumberedWork& work) {
+      for (std::size_t piece = 1; piece < work.blocks; piece += piece % 3) {
+        work.compute(piece);
+        work.pack(piece, sent.emplace_back(piece, std::vector<std::byte>()).second);
+        work.reduce(piece);
+      }
+    };
+    EXPECT_FALSE(in_blocks(file, other).has_points()) << "a process without all sums has a result";
+    std::size_t bytes = 0;
+    JobOptions first;
+    first.work = [&](const NumberedWork& work) {
+      NumberedWork rest = work;
+      rest.is_there.assign(work.blocks, 0);
+      for (const auto& [piece, results] : sent) {
+        work.unpack(piece, results);
+        work.reduce(piece);
+        rest.is_there[piece] = 1;
+        bytes += results.size();
+      }
+      work_in_threads(rest);
+    };
+    EXPECT_EQ(bytes_of(in_blocks(file, first)), expected) << file;
+    EXPECT_GT(bytes, 1000U);
+  }
+}
+
+TEST_F(StreamedDeviations, StopBetweenBlocks) {
   std::stop_source source;
   JobOptions job;
   job.stop = source.get_token();
   job.progress = [&](std::size_t, std::size_t) { source.request_stop(); };
   EXPECT_THROW(in_blocks(ply(), job), Stopped);
-  EXPECT_GT(fs::file_size(unfinished_name(options_.output)), 100U);
 }
 
 TEST_F(StreamedDeviations, SayWhatIsWrongWithTheFile) {

@@ -59,6 +59,11 @@ std::uint32_t FineHistogram::class_of(double value) {
   return value < 0 ? zero - 1 - place : zero + 1 + place;
 }
 
+void FineHistogram::add(std::uint32_t number, std::uint64_t count) {
+  if (number >= counts_.size()) throw std::invalid_argument("a class that does not exist");
+  counts_[number] += count;
+}
+
 std::uint64_t FineHistogram::count() const { return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}); }
 
 BoundedValue FineHistogram::percentile(double fraction) const {
@@ -94,14 +99,6 @@ std::vector<std::pair<std::uint32_t, std::uint64_t>> FineHistogram::occupied() c
     if (counts_[i] != 0) result.emplace_back(static_cast<std::uint32_t>(i), counts_[i]);
   }
   return result;
-}
-
-void FineHistogram::set(const std::vector<std::pair<std::uint32_t, std::uint64_t>>& occupied) {
-  std::fill(counts_.begin(), counts_.end(), 0);
-  for (const auto& [number, count] : occupied) {
-    if (number >= counts_.size()) throw std::invalid_argument("a class that does not exist");
-    counts_[number] = count;
-  }
 }
 
 }  // namespace abbe

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
-#include <type_traits>
 
 #include "abbe/geometry/parallel_blocks.h"
 
@@ -16,27 +14,6 @@ constexpr std::uint32_t kBeyondBorder = 0xffffffffU, kTooFar = 0xfffffffeU;
 constexpr std::size_t kPointsTogether = 16384;
 /// Parts of the regions that are added at a time.
 constexpr std::size_t kRegionParts = 16;
-
-template <class Value>
-void append_value(const Value& value, std::string& bytes) {
-  static_assert(std::is_trivially_copyable_v<Value>);
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-template <class Value>
-Value take_value(std::string_view& bytes) {
-  static_assert(std::is_trivially_copyable_v<Value>);
-  if (bytes.size() < sizeof(Value)) throw std::invalid_argument("the state of the sums ends");
-  Value value;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  bytes.remove_prefix(sizeof value);
-  return value;
-}
-
-struct PackedPoint {
-  std::uint64_t number;
-  double x, y, z, deviation_mm;
-};
 
 }  // namespace
 
@@ -77,9 +54,10 @@ DeviationStatistics DeviationTotals::statistics() const {
 }
 
 DeviationSums::DeviationSums(const SurfaceDeviationOptions& options, std::size_t sample)
-    : options_(options), most_(sample), regions_(options.regions), sample_(sample) {}
+    : options_(options), regions_(options.regions), sample_(sample) {}
 
-void DeviationSums::add(const Eigen::Matrix3Xd& points, std::span<const SurfacePoint> closest, int threads) {
+void DeviationSums::add(std::uint64_t first, const Eigen::Matrix3Xd& points, std::span<const SurfacePoint> closest,
+                        int threads) {
   std::vector<std::uint32_t> classes(closest.size());
   const std::size_t blocks = (closest.size() + kPointsTogether - 1) / kPointsTogether;
   std::vector<DeviationTotals> totals(blocks);
@@ -99,8 +77,8 @@ void DeviationSums::add(const Eigen::Matrix3Xd& points, std::span<const SurfaceP
       ++too_far_;
     } else {
       histogram_.add(classes[i]);
-      if (!sample_.wants(points_ + i, closest[i].distance)) continue;
-      sample_.add({points_ + i, points.col(static_cast<Eigen::Index>(i)), closest[i].distance});
+      if (!sample_.wants(first + i, closest[i].distance)) continue;
+      sample_.add({first + i, points.col(static_cast<Eigen::Index>(i)), closest[i].distance});
     }
   }
   if (!regions_.empty()) add_regions(closest, classes, threads);
@@ -141,48 +119,6 @@ std::vector<DeviationStatistics> DeviationSums::regions() const {
   std::vector<DeviationStatistics> result;
   for (const DeviationTotals& region : regions_) result.push_back(region.statistics());
   return result;
-}
-
-std::string DeviationSums::state() const {
-  std::string bytes;
-  for (const std::uint64_t number : {points_, beyond_border_, too_far_}) append_value(number, bytes);
-  append_value(all_, bytes);
-  append_value(std::uint64_t{regions_.size()}, bytes);
-  for (const DeviationTotals& region : regions_) append_value(region, bytes);
-  const auto occupied = histogram_.occupied();
-  append_value(std::uint64_t{occupied.size()}, bytes);
-  for (const auto& [number, count] : occupied) {
-    append_value(number, bytes);
-    append_value(count, bytes);
-  }
-  const std::vector<SampledPoint> kept = sample_.points();
-  append_value(std::uint64_t{kept.size()}, bytes);
-  for (const SampledPoint& p : kept) {
-    append_value(PackedPoint{p.number, p.point.x(), p.point.y(), p.point.z(), p.deviation_mm}, bytes);
-  }
-  return bytes;
-}
-
-void DeviationSums::set_state(std::string_view state) {
-  points_ = take_value<std::uint64_t>(state);
-  beyond_border_ = take_value<std::uint64_t>(state);
-  too_far_ = take_value<std::uint64_t>(state);
-  all_ = take_value<DeviationTotals>(state);
-  if (take_value<std::uint64_t>(state) != regions_.size()) throw std::invalid_argument("the state has other regions");
-  for (DeviationTotals& region : regions_) region = take_value<DeviationTotals>(state);
-  std::vector<std::pair<std::uint32_t, std::uint64_t>> occupied;
-  for (auto left = take_value<std::uint64_t>(state); left > 0; --left) {
-    const auto number = take_value<std::uint32_t>(state);
-    occupied.emplace_back(number, take_value<std::uint64_t>(state));
-  }
-  histogram_.set(occupied);
-  // A point that is kept now is kept again: others only push out what comes behind them.
-  sample_ = PointSample(most_);
-  for (auto left = take_value<std::uint64_t>(state); left > 0; --left) {
-    const auto p = take_value<PackedPoint>(state);
-    sample_.add({p.number, {p.x, p.y, p.z}, p.deviation_mm});
-  }
-  if (!state.empty()) throw std::invalid_argument("the state of the sums is too long");
 }
 
 }  // namespace abbe

@@ -57,6 +57,13 @@ TEST(PointSampleOfNumbers, DoesNotDependOnTheOrder) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].number, b[i].number);
   EXPECT_GE(a.size(), 200U);
   EXPECT_EQ(forwards.least()->number, backwards.least()->number);
+  // What another choice of all points keeps is what there is, and no more.
+  std::size_t kept = 0;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    kept += forwards.keeps({i, Eigen::Vector3d::Zero(), std::sin(static_cast<double>(i))}) ? 1 : 0;
+  }
+  EXPECT_EQ(kept, a.size());
+  EXPECT_TRUE(PointSample(50).keeps({0, Eigen::Vector3d::Zero(), 0})) << "an empty choice";
 }
 
 }  // namespace

@@ -43,6 +43,14 @@ bool PointSample::wants(std::uint64_t number, double deviation_mm) const {
          (most_ > 0 && hash_of_number(number) < hash_of_number(sample_.front().number));
 }
 
+bool PointSample::keeps(const SampledPoint& point) const {
+  const auto within = [&](const auto& heap, std::size_t most, const auto& first) {
+    return heap.size() < most || (most > 0 && !first(heap.front(), point));
+  };
+  return within(sample_, most_, hash_first) || within(least_, kExtremes, least_first) ||
+         within(largest_, kExtremes, largest_first);
+}
+
 void PointSample::add(const SampledPoint& point) {
   keep_sampled(point, most_, hash_first, sample_);
   keep_sampled(point, kExtremes, least_first, least_);

@@ -4,6 +4,11 @@ namespace abbe {
 
 ScanComparison compare_scan(const ClosestPointFinder& surface, const Eigen::Matrix3Xd& points,
                             const ScanComparisonOptions& options) {
+  return compare_scan(surface.closest(points, options.threads, options.stop), points, options);
+}
+
+ScanComparison compare_scan(std::vector<SurfacePoint> closest, const Eigen::Matrix3Xd& points,
+                            const ScanComparisonOptions& options) {
   ScanComparison result;
   result.faces = options.faces;
   SurfaceDeviationOptions deviation;
@@ -11,7 +16,7 @@ ScanComparison compare_scan(const ClosestPointFinder& surface, const Eigen::Matr
   deviation.largest_mm = options.largest_mm;
   deviation.region_of_triangle = result.faces.face_of_triangle;
   deviation.regions = result.faces.count();
-  result.closest = surface.closest(points, options.threads, options.stop);
+  result.closest = std::move(closest);
   result.deviation = surface_deviation(result.closest, deviation);
   const std::size_t count = result.deviation.all.sample.count;
   result.counted_mm.reserve(count);
