@@ -213,12 +213,15 @@ void WorkCheckpoint::begin_to_write() {
       throw InputError({.file = path_.string()}, "another process has begun to work on these results",
                        "another output, or that process to end");
     }
-  } else if (!is_used_) {
-    if (size_of(*file_) > 0) {
-      tell(fmt::format("{} is of other inputs or of another version, and is replaced", path_.string()));
-    }
-    found_.clear();
+  } else if (found_.empty()) {
+    if (size_of(*file_) > 0) tell(fmt::format("{} is of another version or damaged, and is replaced", path_.string()));
     whole_ = 0;
+  } else if (!is_used_) {
+    // Work that was done within after_s is not in the file, though work that follows may be.
+    tell(
+        fmt::format("no block of {} fits so far: they are of other inputs, or of work that follows, and stay until all "
+                    "is done",
+                    path_.string()));
   }
   // What a killed process has written in part goes.
   if (::ftruncate(file_->number(), static_cast<off_t>(whole_)) != 0) fail_to_write(path_, errno);

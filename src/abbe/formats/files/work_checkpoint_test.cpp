@@ -207,6 +207,21 @@ TEST_F(WorkCheckpointTest, BlocksOfOtherInputsAreNotUsed) {
   EXPECT_NE(said_.find("of other inputs"), std::string::npos) << said_;
 }
 
+TEST_F(WorkCheckpointTest, BlocksOfWorkThatFollowsStayWhenWorkThatWasNotKeptIsWritten) {
+  kill_after(17, 2);
+  {
+    Numbers first(1), second(2);
+    WorkCheckpoint checkpoint(output(), at_once());
+    checkpoint.work(first.work(), {});
+    EXPECT_EQ(first.computed, Numbers::kBlocks);
+    checkpoint.work(second.work(), {});
+    EXPECT_LT(second.computed, Numbers::kBlocks);
+    checkpoint.remove();
+  }
+  EXPECT_NE(said_.find("blocks of the test are taken from"), std::string::npos) << said_;
+  EXPECT_FALSE(fs::exists(file()));
+}
+
 TEST_F(WorkCheckpointTest, BlocksOfAnotherVersionAreNotUsed) {
   kill_after(17);
   std::string bytes = contents();
