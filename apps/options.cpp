@@ -40,7 +40,7 @@ Check in_range(double from, double to) { return number_check(from, to, fmt::form
 Check positive_number() { return number_check(std::numeric_limits<double>::denorm_min(), kLargest, "above 0"); }
 Check non_negative_number() { return number_check(0.0, kLargest, "of at least 0"); }
 Check one_of(const std::vector<std::string>& words) {
-  const CLI::IsMember member(words);
+  const CLI::Validator member = CLI::IsMember(words);
   return {[member](const std::string& text) { return member(text); }, member.get_description(), words};
 }
 
