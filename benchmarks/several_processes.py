@@ -149,7 +149,7 @@ def main():
     parser.add_argument("--samples", type=int, default=400000)
     parser.add_argument("--poses", type=int, default=400000)
     parser.add_argument("--points", type=int, default=16000000, help="of a scan, at least 8000")
-    parser.add_argument("--readings", type=int, default=240, help="of a plan, at least 200")
+    parser.add_argument("--readings", type=int, default=480, help="of a plan, at least 400")
     parser.add_argument("--only", nargs="+", metavar="KIND", help="monte-carlo, map, deviate, deviate-in-blocks, "
                         "register, plan; default: all")
     arguments = parser.parse_args()
@@ -163,7 +163,8 @@ def main():
             if name not in kinds:
                 sys.exit(f"{name}: unknown; expected {', '.join(kinds)}")
             words, items = kinds[name]
-            report(name, runs, words, (items // 4, items))
+            # Few readings do not determine what is planned for.
+            report(name, runs, words, (items // 2 if name == "plan" else items // 4, items))
 
 
 if __name__ == "__main__":
