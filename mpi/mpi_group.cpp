@@ -8,6 +8,7 @@
 #include <climits>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/stopped.h"
@@ -42,18 +43,43 @@ MpiGroup::~MpiGroup() {
       while (!has_left_[static_cast<std::size_t>(i)]) receive(i);
     }
   }
+  wait_for_sent();
   MPI_Finalize();
 }
 
-void MpiGroup::send(int to, int tag, const std::vector<std::byte>& bytes) {
+int MpiGroup::length_of(const std::vector<std::byte>& bytes, int to) const {
   if (bytes.size() > INT_MAX) {
     throw SumError(fmt::format("a message of {} bytes for {} exceeds the 2 GiB of MPI; expected more processes",
                                bytes.size(), name_of(to)));
   }
-  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD);
+  return static_cast<int>(bytes.size());
+}
+
+void MpiGroup::send(int to, int tag, const std::vector<std::byte>& bytes) {
+  MPI_Send(bytes.data(), length_of(bytes, to), MPI_BYTE, to, tag, MPI_COMM_WORLD);
+}
+
+void MpiGroup::send_soon(int to, int tag, std::vector<std::byte> bytes) {
+  const int length = length_of(bytes, to);
+  Sending& sending = sending_.emplace_back(std::move(bytes), MPI_REQUEST_NULL);
+  MPI_Isend(sending.bytes.data(), length, MPI_BYTE, to, tag, MPI_COMM_WORLD, &sending.request);
+}
+
+void MpiGroup::drop_sent() {
+  std::erase_if(sending_, [](Sending& sending) {
+    int is_sent = 0;
+    MPI_Test(&sending.request, &is_sent, MPI_STATUS_IGNORE);
+    return is_sent != 0;
+  });
+}
+
+void MpiGroup::wait_for_sent() {
+  for (Sending& sending : sending_) MPI_Wait(&sending.request, MPI_STATUS_IGNORE);
+  sending_.clear();
 }
 
 std::optional<MpiGroup::Message> MpiGroup::look() {
+  drop_sent();
   MPI_Status status;
   int has_come = 0;
   MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &has_come, &status);

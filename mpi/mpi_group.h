@@ -1,9 +1,13 @@
 #pragma once
 
+#include <mpi.h>
+
 #include <cstddef>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "abbe/study/process_group.h"
@@ -43,7 +47,19 @@ class MpiGroup : public ProcessGroup {
   };
 
   SumOfReadings sum(PieceSummer& summer, const SumRequest& request, int threads, const std::stop_token& stop);
+  /// A message that is under way; its bytes stay until the receiver has them.
+  struct Sending {
+    Sending(std::vector<std::byte> given, MPI_Request none) : bytes(std::move(given)), request(none) {}
+    std::vector<std::byte> bytes;
+    MPI_Request request;
+  };
+
+  int length_of(const std::vector<std::byte>& bytes, int to) const;
   void send(int to, int tag, const std::vector<std::byte>& bytes);
+  /// Goes on at once, where send() would wait, and keep a processor busy, until the receiver looks for a long message.
+  void send_soon(int to, int tag, std::vector<std::byte> bytes);
+  void drop_sent();
+  void wait_for_sent();
   Message receive(int from, const std::stop_token& stop = {});
   std::optional<Message> look();  ///< a message from anybody, if there is one
   [[noreturn]] void end();        ///< of all but the first: the first process has ended
@@ -55,6 +71,7 @@ class MpiGroup : public ProcessGroup {
   bool ended_ = false;            // the first process has said so
   std::uint64_t works_ = 0;       // lists of numbered work that were begun
   std::vector<bool> has_left_{};  // [size_]: has ended its command
+  std::list<Sending> sending_{};
 };
 
 }  // namespace abbe

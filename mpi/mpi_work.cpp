@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "abbe/formats/text/input_error.h"
 #include "block_workers.h"
@@ -155,17 +156,16 @@ class MpiGroup::OtherOfWork {
         pace.add(1);
         put_block(work_, block, results);
         if (work_.reduce) work_.reduce(block);
-        if (results.size() < kMessageBytes) continue;
-        group_.send(0, kResults, results);
-        results.clear();
+        if (results.size() >= kMessageBytes) group_.send_soon(0, kResults, std::exchange(results, {}));
       }
-      if (!results.empty()) group_.send(0, kResults, results);
+      if (!results.empty()) group_.send_soon(0, kResults, std::move(results));
       while (!is_over_) {
         const std::optional<Message> message = group_.look();
         if (!message) break;
         take(*message);
       }
     }
+    group_.wait_for_sent();
   }
 
  private:

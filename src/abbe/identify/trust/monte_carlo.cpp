@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <numeric>
+#include <span>
 
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/digest.h"
@@ -15,23 +17,69 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Rows of `values` are quantities; linear interpolation between order statistics (JCGM 101, 7.7).
-Eigen::MatrixXd percentiles_of(const Eigen::MatrixXd& values, const std::vector<double>& probabilities, int threads) {
-  Eigen::MatrixXd result(values.rows(), static_cast<Index>(probabilities.size()));
-  for_each_block(static_cast<std::size_t>(values.rows()), threads, [&](std::size_t row) {
-    std::vector<double> sorted(static_cast<std::size_t>(values.cols()));
-    for (Index i = 0; i < values.cols(); ++i) sorted[static_cast<std::size_t>(i)] = values(static_cast<Index>(row), i);
-    std::sort(sorted.begin(), sorted.end());
-    for (std::size_t k = 0; k < probabilities.size(); ++k) {
-      const double place = std::clamp(probabilities[k], 0.0, 1.0) * static_cast<double>(sorted.size() - 1);
-      const std::size_t below = std::min(static_cast<std::size_t>(place), sorted.size() - 1);
-      const std::size_t above = std::min(below + 1, sorted.size() - 1);
-      const double part = place - static_cast<double>(below);
-      result(static_cast<Index>(row), static_cast<Index>(k)) = sorted[below] * (1 - part) + sorted[above] * part;
+/// Percentiles of the rows of `values`, which are quantities; linear interpolation between order statistics (JCGM 101,
+/// 7.7). Sorting takes long where there are few readings, so it is shared too.
+class RowPercentiles {
+ public:
+  static constexpr std::size_t kRows = 4;  // of a block
+
+  RowPercentiles(const Eigen::MatrixXd& values, const std::vector<double>& probabilities)
+      : values_(values),
+        probabilities_(probabilities),
+        found_(static_cast<Index>(probabilities.size()), values.rows()) {}
+
+  /// @param fingerprint  of what the values depend on
+  /// @returns [rows, probabilities]
+  Eigen::MatrixXd find(const MonteCarloOptions& options, const std::function<std::uint64_t()>& fingerprint) {
+    const auto rows = static_cast<std::size_t>(values_.rows());
+    NumberedWork work;
+    work.name = "percentiles";
+    work.blocks = (rows + kRows - 1) / kRows;
+    work.threads = options.threads;
+    work.for_all = true;
+    work.is_kept = false;
+    work.fingerprint = fingerprint;
+    work.compute = [this](std::size_t block) { compute(block); };
+    work.pack = [this](std::size_t block, std::vector<std::byte>& bytes) { pack_numbers(of(block), bytes); };
+    work.unpack = [this](std::size_t block, std::span<const std::byte> bytes) {
+      unpack_numbers(bytes, of(block));
+      require_unpacked(bytes);
+    };
+    do_work(options.work, work);
+    return found_.transpose();
+  }
+
+ private:
+  std::size_t count(std::size_t block) const {
+    return std::min(kRows, static_cast<std::size_t>(values_.rows()) - block * kRows);
+  }
+
+  std::span<double> of(std::size_t block) {
+    const std::size_t k = probabilities_.size();
+    return {found_.data() + k * block * kRows, k * count(block)};
+  }
+
+  void compute(std::size_t block) {
+    std::vector<double> sorted(static_cast<std::size_t>(values_.cols()));
+    for (std::size_t row = block * kRows; row < block * kRows + count(block); ++row) {
+      for (Index i = 0; i < values_.cols(); ++i) {
+        sorted[static_cast<std::size_t>(i)] = values_(static_cast<Index>(row), i);
+      }
+      std::sort(sorted.begin(), sorted.end());
+      for (std::size_t k = 0; k < probabilities_.size(); ++k) {
+        const double place = std::clamp(probabilities_[k], 0.0, 1.0) * static_cast<double>(sorted.size() - 1);
+        const std::size_t below = std::min(static_cast<std::size_t>(place), sorted.size() - 1);
+        const std::size_t above = std::min(below + 1, sorted.size() - 1);
+        const double part = place - static_cast<double>(below);
+        found_(static_cast<Index>(k), static_cast<Index>(row)) = sorted[below] * (1 - part) + sorted[above] * part;
+      }
     }
-  });
-  return result;
-}
+  }
+
+  const Eigen::MatrixXd& values_;
+  const std::vector<double>& probabilities_;
+  Eigen::MatrixXd found_;  // [probabilities, rows]
+};
 
 /// Samples in batches, each of which is fitted by itself.
 class SampleBatches {
@@ -48,6 +96,18 @@ class SampleBatches {
 
   const Eigen::MatrixXd& changes() const { return changes_; }  ///< [p, samples]
   std::size_t not_settled() const { return static_cast<std::size_t>(std::accumulate(open_.begin(), open_.end(), 0.0)); }
+
+  std::uint64_t fingerprint() const {
+    Digest digest;
+    digest.add_text("Monte Carlo");
+    digest.add_text(vector_instructions());
+    digest.add(options_.samples);
+    digest.add(options_.seed);
+    digest.add(static_cast<std::uint64_t>(options_.chord_iterations));
+    digest.add_numbers({estimates_.data(), static_cast<std::size_t>(estimates_.size())});
+    sampled_.add_to(digest);
+    return digest.value();
+  }
 
   void draw_and_fit() {
     NumberedWork work;
@@ -76,18 +136,6 @@ class SampleBatches {
   std::span<double> changes_of(std::size_t batch) {
     const auto p = static_cast<std::size_t>(changes_.rows());
     return {changes_.data() + p * batch * kSampleBatch, p * size(batch)};
-  }
-
-  std::uint64_t fingerprint() const {
-    Digest digest;
-    digest.add_text("Monte Carlo");
-    digest.add_text(vector_instructions());
-    digest.add(options_.samples);
-    digest.add(options_.seed);
-    digest.add(static_cast<std::uint64_t>(options_.chord_iterations));
-    digest.add_numbers({estimates_.data(), static_cast<std::size_t>(estimates_.size())});
-    sampled_.add_to(digest);
-    return digest.value();
   }
 
   template <typename Work>
@@ -171,13 +219,25 @@ MonteCarloResult monte_carlo(const Problem& problem, const Identification& ident
   result.mean = estimates + shift;
   const Eigen::MatrixXd centred = changes.colwise() - shift;
   result.covariance = centred * centred.transpose() / (n - 1);
-  result.percentiles = percentiles_of(changes, options.probabilities, options.threads).colwise() + estimates;
+  const auto of_changes = [&batches] {
+    Digest digest;
+    digest.add_text("percentiles");
+    digest.add(batches.fingerprint());
+    return digest;
+  };
+  result.percentiles =
+      RowPercentiles(changes, options.probabilities).find(options, [&] { return of_changes().value(); }).colwise() +
+      estimates;
   if (prediction && prediction->rows() > 0) {
     const Eigen::MatrixXd quantities = *prediction * changes;
     result.prediction_mean = quantities.rowwise().mean();
     result.prediction_uncertainty =
         ((quantities.colwise() - result.prediction_mean).rowwise().squaredNorm() / (n - 1)).cwiseSqrt();
-    result.prediction_percentiles = percentiles_of(quantities, options.probabilities, options.threads);
+    result.prediction_percentiles = RowPercentiles(quantities, options.probabilities).find(options, [&] {
+      Digest digest = of_changes();
+      digest.add_numbers({prediction->data(), static_cast<std::size_t>(prediction->size())});
+      return digest.value();
+    });
   }
   result.status = MonteCarloStatus::done;
   return result;
