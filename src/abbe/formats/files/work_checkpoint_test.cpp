@@ -204,7 +204,7 @@ TEST_F(WorkCheckpointTest, ADamagedRecordAndAllBehindItAreComputedAgain) {
 TEST_F(WorkCheckpointTest, BlocksOfOtherInputsAreNotUsed) {
   kill_after(17, 2);
   EXPECT_EQ(finish(), Numbers::kBlocks);
-  EXPECT_NE(said_.find("of other inputs"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("belong to other inputs"), std::string::npos) << said_;
 }
 
 TEST_F(WorkCheckpointTest, BlocksOfWorkThatFollowsStayWhenWorkThatWasNotKeptIsWritten) {

@@ -206,7 +206,7 @@ TEST_F(StreamedReadings, TakeNoSumsOfAnotherModelOrOfOtherReadings) {
         run(1000, {.map = false, .work = [&](const NumberedWork& work) { checkpoint.work(work, {}); }});
     expect_same(fresh.identification, result.identification);
     EXPECT_THAT(told, testing::Not(HasSubstr("taken from")));
-    EXPECT_THAT(told, HasSubstr("of other inputs"));
+    EXPECT_THAT(told, HasSubstr("belong to other inputs"));
   };
   expect_fresh();
   stop_after_sums(20);
