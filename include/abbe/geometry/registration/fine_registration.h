@@ -29,8 +29,8 @@ struct FineRegistrationOptions {
   int iterations = 100;
   double movement_mm = 0;  ///< done when no point of the scan moves more; 0: 1e-9 of the extent of the scan
   int threads = 0;         ///< 0: all; the result does not depend on it
-  /// Who goes over very many points; empty: this process. Every process gets the result. Its fingerprints do not know
-  /// the surface.
+  /// Who makes the passes over large scans; empty: this process. Every process gets the result. Its fingerprints do not
+  /// know the surface.
   WorkDriver work{};
 };
 

@@ -218,10 +218,10 @@ void WorkCheckpoint::begin_to_write() {
     whole_ = 0;
   } else if (!is_used_) {
     // Work that was done within after_s is not in the file, though work that follows may be.
-    tell(
-        fmt::format("no block of {} fits so far: they are of other inputs, or of work that follows, and stay until all "
-                    "is done",
-                    path_.string()));
+    tell(fmt::format(
+        "no block in {} fits so far: its blocks belong to other inputs or to later work, and are kept until "
+        "all is done",
+        path_.string()));
   }
   // What a killed process has written in part goes.
   if (::ftruncate(file_->number(), static_cast<off_t>(whole_)) != 0) fail_to_write(path_, errno);
