@@ -4,7 +4,7 @@
     python3 benchmarks/big_scan.py build/release/bin/abbe --points 100000000 --triangles 10000000 --folder FOLDER
 
 Makes a wavy sheet as binary STL and points near it as binary PLY (three floats, 12 bytes each), runs the command with
-/usr/bin/time -v, prints points per second and the peak memory, and removes the files.
+/usr/bin/time -v, prints the time, the processor time, points per second and the peak memory, and removes the files.
 """
 import argparse
 import pathlib
@@ -71,8 +71,10 @@ def main():
         seconds = time.perf_counter() - begin
         if done.returncode not in (0, 1):
             raise SystemExit(done.stderr)
+        processor = sum(float(re.search(rf"{kind} time \(seconds\): ([\d.]+)", done.stderr).group(1)) for kind in ("User", "System"))
         memory = int(re.search(r"Maximum resident set size \(kbytes\): (\d+)", done.stderr).group(1))
         print(f"{options.points} points, {triangles} triangles: {seconds:.1f} s, "
+              f"{processor:.1f} s of the processor, "
               f"{options.points / seconds / 1e6:.2f} million points/s, peak {memory / 1024:.0f} MiB")
     finally:
         scan.unlink(missing_ok=True)

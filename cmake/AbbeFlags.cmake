@@ -30,6 +30,7 @@ target_compile_options(abbe_common_flags INTERFACE
   $<$<BOOL:${ABBE_WERROR}>:-Werror>
   # GCC starts to collect garbage early, which is a tenth of the time of a batch; batches stay below 2 GB without.
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
+target_compile_options(abbe_flags INTERFACE $<$<BOOL:$<TARGET_PROPERTY:ABBE_COMPUTES_LITTLE>>:-O0>)
 # Tests see the internal headers too.
 target_include_directories(abbe_test_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
 # The code of tests is compiled for one run. Where it computes little itself, it is not optimised: that takes a third to a

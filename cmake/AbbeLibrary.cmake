@@ -1,19 +1,25 @@
 # abbe_library(NAME SOURCES a.cpp ... DEPENDS geometry ... [LINK lib ...] [PRIVATE_LINK lib ...] [TESTS a_test.cpp ...]
-#   [ALONE b.cpp ...] [FAST pattern] [TESTS_COMPUTE_LITTLE])
+#   [ALONE b.cpp ...] [FAST pattern] [COMPUTES_LITTLE] [TESTS_COMPUTE_LITTLE])
 #
 # One static library per folder of src/abbe. Its public headers are in include/abbe and are installed; those in src/abbe are
 # for the library itself and for tests. DEPENDS names other folders; TESTS are the unit tests that stand beside the
 # sources, built into one program per folder. ALONE are sources or tests that cannot share a unit, FAST
-# the sources that take the time of users, TESTS_COMPUTE_LITTLE is for tests that need no optimisation (cmake/AbbeUnits.cmake).
+# the sources that take the time of users. COMPUTES_LITTLE and TESTS_COMPUTE_LITTLE: quick builds do not optimise the library
+# (but for FAST), or its tests (cmake/AbbeUnits.cmake).
 include(AbbeUnits)
 include(AbbeFlags)
 include(AbbeDiscover)
 
 function(abbe_library name)
-  cmake_parse_arguments(ARG "TESTS_COMPUTE_LITTLE" "FAST" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK;ALONE" ${ARGN})
+  cmake_parse_arguments(ARG "COMPUTES_LITTLE;TESTS_COMPUTE_LITTLE" "FAST" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK;ALONE" ${ARGN})
   if(ARG_SOURCES)
     add_library(abbe_${name} STATIC)
-    abbe_units(abbe_${name} ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} FAST "${ARG_FAST}" PRECOMPILED abbe_precompiled)
+    set(precompiled abbe_precompiled)
+    if(ARG_COMPUTES_LITTLE AND ABBE_QUICK_BUILD)
+      set(precompiled abbe_little_precompiled)
+      set_target_properties(abbe_${name} PROPERTIES ABBE_COMPUTES_LITTLE ON)
+    endif()
+    abbe_units(abbe_${name} ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} FAST "${ARG_FAST}" PRECOMPILED ${precompiled})
     set(scope PUBLIC)
     # In the static programs fmt, Highway, zlib, Expat and SQLite are others (AbbeStatic.cmake); a consumer links the shared ones.
     list(TRANSFORM ARG_PRIVATE_LINK REPLACE "^fmt::fmt$" "$<BUILD_INTERFACE:abbe_fmt>;$<INSTALL_INTERFACE:fmt::fmt>")
@@ -46,6 +52,9 @@ function(abbe_library name)
   endforeach()
   list(REMOVE_DUPLICATES seen)
   set_property(GLOBAL PROPERTY ABBE_SEEN_FROM_${name} ${seen})
+  if(ARG_SOURCES AND ARG_COMPUTES_LITTLE AND ABBE_QUICK_BUILD)
+    abbe_link_optimised_first(abbe_${name} INTERFACE ${seen})
+  endif()
 
   if(ABBE_TESTS AND ARG_TESTS)
     add_executable(${name}_test)

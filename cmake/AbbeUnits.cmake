@@ -6,6 +6,7 @@
 # clang-tidy and editors want it, every source is a unit of its own.
 option(ABBE_UNITY "Compile several sources in one unit" ON)
 option(ABBE_PRECOMPILE "Precompile the headers that most sources need" ON)
+option(ABBE_QUICK_BUILD "Do not optimise what computes little, which halves the time to compile it" OFF)
 set(ABBE_BATCH 8 CACHE STRING "Sources in one unit")
 
 # abbe_units(TARGET ROOT SOURCES a.cpp ... [ALONE b.cpp ...] [FAST pattern] [PRECOMPILED header target]): the sources of an
@@ -35,7 +36,7 @@ function(abbe_units target root)
       if(NOT ABBE_UNITY OR source IN_LIST ARG_ALONE OR name MATCHES "^\\.\\." OR NOT EXISTS ${path})
         target_sources(${target} PRIVATE ${source})
         if("${sources}" STREQUAL "fast")
-          abbe_compile_fast(${source} "${ARG_ALONE}")
+          abbe_compile_fast(${source} "${ARG_ALONE}" "${ARG_PRECOMPILED}")
         endif()
         continue()
       endif()
@@ -43,14 +44,14 @@ function(abbe_units target root)
       set_source_files_properties(${source} PROPERTIES HEADER_FILE_ONLY ON)
       math(EXPR count "${count} + 1")
       if(count EQUAL ABBE_BATCH)
-        abbe_write_batch(${target} ${number} "${batch}" ${sources})
+        abbe_write_batch(${target} ${number} "${batch}" ${sources} "${ARG_PRECOMPILED}")
         set(batch "")
         set(count 0)
         math(EXPR number "${number} + 1")
       endif()
     endforeach()
     if(batch)
-      abbe_write_batch(${target} ${number} "${batch}" ${sources})
+      abbe_write_batch(${target} ${number} "${batch}" ${sources} "${ARG_PRECOMPILED}")
       math(EXPR number "${number} + 1")
     endif()
   endforeach()
@@ -60,20 +61,29 @@ function(abbe_units target root)
   endif()
 endfunction()
 
-# kind: "fast", or anything else.
-function(abbe_write_batch target number content kind)
+# kind: "fast", or anything else. precompiled: of the target.
+function(abbe_write_batch target number content kind precompiled)
   set(file ${CMAKE_CURRENT_BINARY_DIR}/${target}_${number}.cpp)
   file(CONFIGURE OUTPUT ${file} CONTENT "${content}" @ONLY)
   target_sources(${target} PRIVATE ${file})
   if(kind STREQUAL "fast")
-    abbe_compile_fast(${file} "")
+    abbe_compile_fast(${file} "" "${precompiled}")
   endif()
 endfunction()
 
-# A source that optimised builds compile with -O3. `alone`: sources that take no precompiled header.
-function(abbe_compile_fast source alone)
+# A source that optimised builds compile with -O3. `alone`: sources that take no precompiled header. `precompiled`: that of the
+# target.
+function(abbe_compile_fast source alone precompiled)
   set(options $<$<CONFIG:Release>:-O3>)
-  if(TARGET abbe_precompiled_fast AND NOT source IN_LIST alone)
+  if(precompiled STREQUAL abbe_little_precompiled)
+    # clang accepts no precompiled header that was not optimised.
+    list(APPEND options -O1)
+    if(ABBE_PRECOMPILE AND NOT source IN_LIST alone)
+      set(header ${PROJECT_BINARY_DIR}/CMakeFiles/abbe_precompiled.dir/cmake_pch.hxx.pch)
+      list(APPEND options -include-pch ${header})
+      set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON OBJECT_DEPENDS ${header})
+    endif()
+  elseif(TARGET abbe_precompiled_fast AND NOT source IN_LIST alone)
     set(header ${PROJECT_BINARY_DIR}/CMakeFiles/abbe_precompiled_fast.dir/cmake_pch.hxx)
     list(APPEND options -Winvalid-pch -include ${header})
     set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON OBJECT_DEPENDS ${header}.gch)
@@ -81,27 +91,31 @@ function(abbe_compile_fast source alone)
   set_property(SOURCE ${source} APPEND PROPERTY COMPILE_OPTIONS ${options})
 endfunction()
 
+# abbe_link_optimised_first(TARGET SCOPE NAME...): of the folders NAME of src/abbe, those that are optimised are linked first and
+# whole with a target that is not. Of functions of templates that both have, the linker takes the first.
+function(abbe_link_optimised_first target scope)
+  foreach(name IN LISTS ARGN)
+    get_target_property(type abbe_${name} TYPE)
+    get_target_property(little abbe_${name} ABBE_COMPUTES_LITTLE)
+    if(type STREQUAL STATIC_LIBRARY AND NOT little)
+      # The same words wherever they are asked for, so that CMake names each archive once.
+      target_link_options(${target} ${scope}
+        $<BUILD_INTERFACE:LINKER:--push-state,--whole-archive,$<TARGET_FILE:abbe_${name}>,--pop-state>)
+    endif()
+  endforeach()
+endfunction()
+
 # abbe_test_units(TARGET ROOT SOURCES a_test.cpp ... [ALONE b_test.cpp ...] [COMPUTES_LITTLE] [LIBRARIES study ...]): the
 # sources of a test program.
 #
-# COMPUTES_LITTLE: compiled without optimisation (AbbeFlags.cmake). Then LIBRARIES, the folders of src/abbe that the program
-# uses, are linked first and whole: of functions of templates that both have, the linker takes the first.
+# COMPUTES_LITTLE: compiled without optimisation (AbbeFlags.cmake); LIBRARIES, the folders of src/abbe that the program uses.
 function(abbe_test_units target root)
   cmake_parse_arguments(ARG "COMPUTES_LITTLE" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   set(precompiled abbe_test_precompiled)
   if(ARG_COMPUTES_LITTLE)
     set(precompiled abbe_little_test_precompiled)
     set_target_properties(${target} PROPERTIES ABBE_COMPUTES_LITTLE ON)
-    set(archives "")
-    foreach(library IN LISTS ARG_LIBRARIES)
-      get_target_property(type abbe_${library} TYPE)
-      if(type STREQUAL STATIC_LIBRARY)
-        list(APPEND archives $<TARGET_FILE:abbe_${library}>)
-      endif()
-    endforeach()
-    if(archives)
-      target_link_options(${target} PRIVATE LINKER:--whole-archive ${archives} LINKER:--no-whole-archive)
-    endif()
+    abbe_link_optimised_first(${target} PRIVATE ${ARG_LIBRARIES})
   endif()
   abbe_units(${target} ${root} SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} PRECOMPILED ${precompiled})
 endfunction()
