@@ -19,6 +19,7 @@
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/kept_blocks_for_test.h"
 #include "abbe/report/evaluations/evaluation_report.h"
 #include "abbe/report/words/evaluation_text.h"
 
@@ -136,6 +137,40 @@ TEST_F(StreamedDeviations, AreThoseOfTheScanInMemoryInEveryFormat) {
     // All points are fewer than are shown.
     EXPECT_EQ(all.compared.counted_mm, streamed.compared.counted_mm);
     EXPECT_EQ(all.colour_mm, streamed.colour_mm);
+  }
+}
+
+TEST_F(StreamedDeviations, WithoutAPageTheReportOfAScanInMemoryHasTheSameBytesInEveryFormat) {
+  for (const std::string& file : {ply(), xyz(), write("scan.csv", point_cloud_csv(cloud_)), pcd(3)}) {
+    request_.page = false;
+    const ScanDeviations all = as_a_whole(file);
+    options_.above = kStreamedAbove;
+    const std::string expected = evaluation_json(all.report).dump();
+    for (const int threads : {1, 2}) {
+      request_.threads = threads;
+      const ScanDeviations found = in_blocks(file);
+      EXPECT_EQ(evaluation_json(found.report).dump(), expected) << file;
+      EXPECT_EQ(found.colour_mm, all.colour_mm);
+      EXPECT_EQ(found.elsewhere, all.elsewhere);
+      EXPECT_EQ(found.compared.counted_mm, all.compared.counted_mm);
+    }
+    test::KeptBlocks kept;
+    JobOptions job;
+    job.work = kept.keeping();
+    in_blocks(file, job);
+    job.work = [&](const NumberedWork& work) {
+      kept.giving()(work);
+      for (std::size_t piece = work.blocks; piece-- > 0;) work.finished(piece);
+    };
+    EXPECT_EQ(evaluation_json(in_blocks(file, job).report).dump(), expected) << "pieces of another process";
+    job.work = kept.giving();
+    EXPECT_FALSE(in_blocks(file, job).has_points()) << "the first process alone has the result";
+    ASSERT_EQ(kept.fingerprints.size(), 1U);
+    request_.largest_mm *= 2;
+    job.work = kept.keeping();
+    in_blocks(file, job);
+    request_.largest_mm /= 2;
+    EXPECT_NE(kept.fingerprints[0], kept.fingerprints[1]) << "it depends on what was asked for";
   }
 }
 
