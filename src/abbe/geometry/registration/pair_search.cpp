@@ -19,6 +19,9 @@ using Eigen::Vector3d;
 constexpr double kAngleBin = 0.2618;  ///< 15 degrees
 constexpr double kDistanceBins = 24;  ///< over the diameter
 constexpr std::size_t kPairsDrawn = 6000;
+/// Lengths up to two diameters, three angles.
+constexpr std::size_t kKeys = (2 * static_cast<std::size_t>(kDistanceBins) + 1) * 512;
+constexpr std::uint32_t kNoKey = 0xffffffff;
 constexpr std::size_t kFirstMatches = 4096;  ///< of the pairs that are tried together
 constexpr std::size_t kBlocks = 32;          ///< of these pairs
 
@@ -42,6 +45,16 @@ struct PairFeature {
     };
     const std::uint32_t length = static_cast<std::uint32_t>(std::min(distance / diameter, 2.0) * kDistanceBins);
     return ((length * 8 + bin(first)) * 8 + bin(second)) * 8 + bin(between);
+  }
+  PairFeature reversed() const {
+    PairFeature other = *this;
+    other.first = -second;
+    other.second = -first;
+    return other;
+  }
+  /// Of the reversed pair.
+  static std::uint32_t reversed_key(std::uint32_t key) {
+    return (key & ~0x1f8u) | (key >> 3 & 0x38u) | (key << 3 & 0x1c0u);
   }
   bool resembles(const PairFeature& other, double diameter) const {
     return std::abs(distance - other.distance) < 0.03 * diameter && std::abs(first - other.first) < 0.2 &&
@@ -102,14 +115,7 @@ class PairSearch {
         generator_(options.seed),
         diameter_((part.points.rowwise().maxCoeff() - part.points.rowwise().minCoeff()).norm()),
         best_(grid, scan.points, options.reach_mm, diameter_, options.candidates, generator_) {
-    for (Eigen::Index i = 0; i < part.size(); ++i) {
-      for (Eigen::Index j = 0; j < part.size(); ++j) {
-        const PairFeature feature = part_feature(i, j);
-        if (i == j || !feature.fixes_a_pose(diameter_)) continue;
-        pairs_.push_back({feature.key(diameter_), static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});
-      }
-    }
-    std::sort(pairs_.begin(), pairs_.end());
+    pairs_ = pairs_of_part();
   }
 
   std::vector<PoseCandidate> run() {
@@ -130,6 +136,40 @@ class PairSearch {
 
  private:
   using Iterator = std::vector<PartPair>::const_iterator;
+
+  /// Pairs of the part that fix a pose, by their keys and then by their points.
+  std::vector<PartPair> pairs_of_part() const {
+    const Eigen::Index points = part_.size();
+    // From the other side a pair has the same angles in another order.
+    std::vector<std::uint32_t> keys(static_cast<std::size_t>(points * points), kNoKey);
+    const auto key_at = [&](Eigen::Index i, Eigen::Index j) -> std::uint32_t& {
+      return keys[static_cast<std::size_t>(i * points + j)];
+    };
+    for (Eigen::Index i = 0; i < points; ++i) {
+      for (Eigen::Index j = i + 1; j < points; ++j) {
+        const PairFeature one = part_feature(i, j), other = one.reversed();
+        const bool first = one.fixes_a_pose(diameter_), second = other.fixes_a_pose(diameter_);
+        if (!first && !second) continue;
+        const std::uint32_t key = one.key(diameter_);
+        if (first) key_at(i, j) = key;
+        if (second) key_at(j, i) = PairFeature::reversed_key(key);
+      }
+    }
+    std::vector<std::uint32_t> begin(kKeys + 1);
+    for (const std::uint32_t key : keys) {
+      if (key != kNoKey) ++begin[key + 1];
+    }
+    for (std::size_t key = 1; key <= kKeys; ++key) begin[key] += begin[key - 1];
+    std::vector<PartPair> pairs(begin[kKeys]);
+    for (Eigen::Index i = 0; i < points; ++i) {
+      for (Eigen::Index j = 0; j < points; ++j) {
+        const std::uint32_t key = key_at(i, j);
+        if (key == kNoKey) continue;
+        pairs[begin[key]++] = {key, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)};
+      }
+    }
+    return pairs;
+  }
 
   PairFeature part_feature(Eigen::Index i, Eigen::Index j) const {
     return {part_.points.col(i), part_.normals.col(i), part_.points.col(j), part_.normals.col(j)};
