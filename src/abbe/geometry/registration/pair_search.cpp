@@ -22,7 +22,7 @@ constexpr std::size_t kPairsDrawn = 6000;
 /// Lengths up to two diameters, three angles.
 constexpr std::size_t kKeys = (2 * static_cast<std::size_t>(kDistanceBins) + 1) * 512;
 constexpr std::uint32_t kNoKey = 0xffffffff;
-constexpr std::size_t kFirstMatches = 4096;  ///< of the pairs that are tried together
+constexpr std::size_t kFirstMatches = 2048;  ///< of the pairs that are tried together
 constexpr std::size_t kBlocks = 32;          ///< of these pairs
 
 /// What two points with normals look like from any side.
@@ -120,8 +120,15 @@ class PairSearch {
 
   std::vector<PoseCandidate> run() {
     draw();
-    // What is kept is told from what was found before. So much is tried at a time, first less.
     std::size_t tried = 0, next = 0;
+    // Until enough are kept, every pose is scored to the end, and twice if it were shared.
+    for (; next < drawn_.size() && tried < options_.poses && !best_.is_full(); ++next) {
+      for_poses(drawn_[next], [&](const RigidTransform& pose) {
+        best_.add(pose);
+        ++tried;
+      });
+    }
+    // What is kept depends on what was found before. So some are tried at a time, at first few.
     for (std::size_t matches = kFirstMatches; next < drawn_.size() && tried < options_.poses; matches *= 2) {
       const std::size_t first = next;
       for (std::size_t sum = 0; next < drawn_.size() && sum < matches; ++next) sum += drawn_[next].matches;
