@@ -85,7 +85,8 @@ def registrations_of_other_files(runs):
     part = runs.examples / "scan/bracket.stl"
     for mine, theirs in ((scan, other), (part, runs.examples / "scan/pin.stl")):
         done = run_with_other_file(runs, register_words(runs, scan), mine, theirs)
-        require(done.returncode == 2 and "expected the same program and the same files" in done.stderr, theirs, done.returncode, done.stderr)
+        require(done.returncode == 2 and "expected the same program and the same files" in done.stderr, theirs,
+                done.returncode, done.stderr)
         require(not (runs.out / "results").exists(), "results were written")
 
 

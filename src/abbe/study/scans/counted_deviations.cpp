@@ -94,6 +94,8 @@ class CountedJob {
   }
 
   std::optional<CountedDeviations> run() {
+    // Every process finds out by the first points that a table has another form.
+    if (pieces_.count() > 0) blocks_.read(blocks_.begin(), blocks_.block_end(blocks_.begin(), 1), 1);
     NumberedWork work{.name = "comparison of the scan", .blocks = pieces_.count(), .threads = request_.threads};
     work.is_kept = false;
     work.fingerprint = [this] { return fingerprint(); };

@@ -19,7 +19,6 @@
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/geometry/kept_blocks_for_test.h"
 #include "abbe/report/evaluations/evaluation_report.h"
 #include "abbe/report/words/evaluation_text.h"
 
@@ -154,23 +153,33 @@ TEST_F(StreamedDeviations, WithoutAPageTheReportOfAScanInMemoryHasTheSameBytesIn
       EXPECT_EQ(found.elsewhere, all.elsewhere);
       EXPECT_EQ(found.compared.counted_mm, all.compared.counted_mm);
     }
-    test::KeptBlocks kept;
+    // Another process packs its pieces, and the first one takes them.
+    std::vector<std::vector<std::byte>> pieces;
+    std::vector<std::uint64_t> fingerprints;
     JobOptions job;
-    job.work = kept.keeping();
-    in_blocks(file, job);
     job.work = [&](const NumberedWork& work) {
-      kept.giving()(work);
-      for (std::size_t piece = work.blocks; piece-- > 0;) work.finished(piece);
+      pieces.assign(work.blocks, {});
+      fingerprints.push_back(work.fingerprint());
+      for (std::size_t piece = 0; piece < work.blocks; ++piece) {
+        work.compute(piece);
+        work.pack(piece, pieces[piece]);
+      }
     };
-    EXPECT_EQ(evaluation_json(in_blocks(file, job).report).dump(), expected) << "pieces of another process";
-    job.work = kept.giving();
     EXPECT_FALSE(in_blocks(file, job).has_points()) << "the first process alone has the result";
-    ASSERT_EQ(kept.fingerprints.size(), 1U);
+    const WorkDriver computing = job.work;
+    job.work = [&](const NumberedWork& work) {
+      for (std::size_t piece = work.blocks; piece-- > 0;) {
+        work.unpack(piece, pieces[piece]);
+        work.finished(piece);
+      }
+    };
+    EXPECT_EQ(evaluation_json(in_blocks(file, job).report).dump(), expected) << file;
     request_.largest_mm *= 2;
-    job.work = kept.keeping();
+    job.work = computing;
     in_blocks(file, job);
     request_.largest_mm /= 2;
-    EXPECT_NE(kept.fingerprints[0], kept.fingerprints[1]) << "it depends on what was asked for";
+    ASSERT_EQ(fingerprints.size(), 2U);
+    EXPECT_NE(fingerprints[0], fingerprints[1]) << "it depends on what was asked for";
   }
 }
 
