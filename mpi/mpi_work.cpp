@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <utility>
 
 #include "abbe/formats/text/input_error.h"
@@ -80,10 +81,12 @@ class MpiGroup::FirstOfWork {
   }
 
   std::size_t next_for(int rank) {
-    while (is_done_[next_] != 0) ++next_;
-    owner_[next_] = rank;
+    const auto size = static_cast<std::size_t>(group_.size_), at = static_cast<std::size_t>(work_.in_ranges ? rank : 0);
+    std::size_t& next = next_.try_emplace(at, at * work_.blocks / size).first->second;
+    while (is_done_[next] != 0 || owner_[next] != kNobody) next = (next + 1) % work_.blocks;
+    owner_[next] = rank;
     --to_hand_out_;
-    return next_++;
+    return next;
   }
 
   void note(std::size_t block) {
@@ -135,7 +138,8 @@ class MpiGroup::FirstOfWork {
   const NumberedWork& work_;
   std::vector<int> owner_;
   std::vector<std::uint8_t> is_done_;
-  std::size_t open_ = 0, to_hand_out_ = 0, next_ = 0;
+  std::size_t open_ = 0, to_hand_out_ = 0;
+  std::map<std::size_t, std::size_t> next_;  // of each range, where the next block is looked for
   std::uint64_t fingerprint_ = 0;
 };
 

@@ -384,31 +384,6 @@ def deviations_after_a_kill(runs):
         require(not kept.exists(), "left over after the results are whole")
 
 
-def deviations_of_other_files(runs):
-    """A process whose part or scan is another one is found out, in memory and in blocks."""
-    scan, other = scan_of_part(runs, "scan.ply", 100), scan_of_part(runs, "other.ply", 100)
-    content = bytearray(other.read_bytes())
-    content[-1] ^= 1  # a sign or an exponent of the last number
-    other.write_bytes(content)
-    script = runs.out / "abbe"
-    for more in ((), ("--stream-above", 1000)):
-        mine, theirs = (" ".join(f"'{word}'" for word in map(str, deviate_words(runs, file, *more)))
-                        for file in (scan, other))
-        script.write_text(f'#!/bin/sh\nif [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then exec "{runs.abbe}" {theirs}; fi\n'
-                          f'exec "{runs.abbe}" {mine}\n')
-        script.chmod(0o755)
-        done = subprocess.run([runs.mpirun, "-n", "2", script], capture_output=True, text=True, env=runs.environment())
-        require(done.returncode == 2 and "of another problem" in done.stderr, more, done.returncode, done.stderr)
-        require(not (runs.out / "results").exists(), "results were written")
-
-
-def registrations(runs):
-    """The pose of a scan, its covariance, and the scan on its part."""
-    scan = scan_of_part(runs, "scan.ply", 60)
-    words = ("register", scan, runs.examples / "scan/bracket.stl", "-o", runs.out / "results")
-    require_same_results(runs, words, TIMES[::4])
-
-
 def plans(runs):
     """The readings of a plan, and the grids that it is compared with."""
     study = runs.out / "trunnion.study.toml"
@@ -431,23 +406,22 @@ def plans(runs):
 CASES = {"MonteCarlo": monte_carlo, "Maps": maps, "KilledAndResumed": killed_and_resumed, "TwoJobs": two_jobs,
          "ReadAgain": read_again, "ReadAgainAfterAKill": read_again_after_a_kill,
          "Deviations": deviations, "StreamedDeviations": streamed_deviations,
-         "DeviationsAfterAKill": deviations_after_a_kill, "DeviationsOfOtherFiles": deviations_of_other_files,
-         "Registrations": registrations, "Plans": plans,
+         "DeviationsAfterAKill": deviations_after_a_kill, "Plans": plans,
          "SameBytes": same_bytes, "WorkersOfOtherFiles": other_files, "LostProcess": lost_process,
          "OtherSubcommands": other_subcommands, "MissingProgram": missing_program}
 
 
-def main():
+def main(cases):
     parser = argparse.ArgumentParser()
-    parser.add_argument("case", choices=CASES)
+    parser.add_argument("case", choices=cases)
     for name in ("--abbe", "--mpirun", "--examples", "--out"):
         parser.add_argument(name, required=True, type=pathlib.Path)
     arguments = parser.parse_args()
     shutil.rmtree(arguments.out, ignore_errors=True)
     arguments.out.mkdir(parents=True)
-    CASES[arguments.case](Runs(arguments))
+    cases[arguments.case](Runs(arguments))
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(CASES))

@@ -17,6 +17,7 @@
 namespace abbe {
 namespace {
 
+using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
@@ -25,7 +26,10 @@ constexpr double kMadToDeviation = 1.482602218505602;
 /// Share of the information of the best seen motion below which a motion counts as not seen.
 constexpr double kUnseen = 1e-5;
 /// Points from which the seen motions are told.
-constexpr Eigen::Index kPointsForRank = 20000;
+constexpr Index kPointsForRank = 20000;
+/// From so many points on, only distances near the expected median are kept, of which the first is off by about 1 %.
+constexpr Index kManyPoints = 100000;
+constexpr double kFirstWidth = 0.1, kLeastWidth = 0.05, kMostWidth = 0.5;  ///< half, of the median
 constexpr double kFarAway = 0.002;  ///< of the extent: nearer, a curved surface is its tangent plane
 
 /// Weight and slope of the influence function at a distance.
@@ -48,11 +52,14 @@ class Fit {
  public:
   Fit(const Matrix3Xd& points, const ClosestPointFinder& surface, const SmoothSurface& smooth,
       const FineRegistrationOptions& options)
-      : points_(in_order(points, options.threads)),
+      : points_(points),
+        order_(order_of(points, options.threads)),
         surface_(surface),
         smooth_(smooth),
         options_(options),
-        distances_(static_cast<std::size_t>(points.cols())),
+        sums_((static_cast<std::size_t>(points.cols()) + kBlock - 1) / kBlock),
+        distances_(sums_.size()),
+        ordered_(sums_.size()),
         hints_(static_cast<std::size_t>(points.cols()), ClosestPointFinder::kNoHint) {
     middle_ = points.rowwise().mean();
     extent_ = std::sqrt((points.colwise() - middle_).squaredNorm() / static_cast<double>(points.cols()));
@@ -61,47 +68,35 @@ class Fit {
   double extent() const { return extent_; }
   Vector3d reference(const RigidTransform& pose) const { return pose * middle_; }
 
+  /// A guess of the scale of the next pass. With a good one, the median of many distances is quick to find.
+  void expect_scale(double scale) { expected_median_ = scale / kMadToDeviation; }
+
   /// One pass over all points: distances, and the sums at this scale.
   WeightedSums pass(const RigidTransform& pose, double scale) {
-    constexpr Eigen::Index kBlock = ClosestPointFinder::kBlock;
-    const std::size_t blocks = static_cast<std::size_t>((points_.cols() + kBlock - 1) / kBlock);
-    std::vector<WeightedSums> sums(blocks);
-    RegistrationPass pass{.block_points = kBlock, .sums = sums, .distances = distances_};
-    pass.fingerprint = [&] { return fingerprint(pose, scale); };
-    pass.compute = [&](std::size_t block) {
-      const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
-      const Eigen::Index count = std::min(kBlock, points_.cols() - first);
-      const Matrix3Xd moved = (pose.rotation * points_.middleCols(first, count)).colwise() + pose.translation;
-      std::vector<SurfacePoint> found(static_cast<std::size_t>(count));
-      surface_.closest_block(moved, found.data(), hints_.data() + first);
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const SurfacePoint& at = found[static_cast<std::size_t>(i)];
-        distances_[static_cast<std::size_t>(first + i)] = at.on_border ? kNothing : std::abs(at.distance);
-        if (at.on_border) {
-          ++sums[block].beyond_border;
-        } else {
-          add(at, moved.col(i), moved.col(i) - reference(pose), scale, &sums[block]);
-        }
-      }
-    };
-    do_pass(pass, options_.work, options_.threads);
-    // In the order of the blocks, so that the sum does not depend on the threads.
-    WeightedSums all;
-    for (const WeightedSums& some : sums) all += some;
-    return all;
+    pose_ = pose;
+    scale_ = scale;
+    median_.reset();
+    window_ = {};
+    if (expected_median_ > 0 && points_.cols() >= kManyPoints) {
+      window_ = {(1 - width_) * expected_median_, (1 + width_) * expected_median_};
+    }
+    return pass_again();
   }
 
   /// Robust standard deviation of the distances of the last pass.
-  double scale() const {
-    std::vector<double> sorted;
-    sorted.reserve(distances_.size());
-    for (const double d : distances_) {
-      if (d != kNothing) sorted.push_back(d);
+  double scale() {
+    if (median_) return kMadToDeviation * *median_;
+    median_ = median_distance(distances_);
+    if (!median_) {
+      window_ = {};
+      pass_again();
+      median_ = median_distance(distances_);
     }
-    if (sorted.empty()) return 0;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    return kMadToDeviation * *middle;
+    if (expected_median_ > 0) {
+      width_ = std::clamp(4 * std::abs(*median_ / expected_median_ - 1), kLeastWidth, kMostWidth);
+    }
+    expected_median_ = *median_;
+    return kMadToDeviation * *median_;
   }
 
   /// Motions that move the points across the surface, as columns; the others move them along it.
@@ -109,11 +104,11 @@ class Fit {
     MatrixXd seen, unseen;  ///< [6, k], orthonormal in the scaled parameters
   };
   Seen seen_motions(const RigidTransform& pose, double scale) const {
-    const Eigen::Index stride = std::max<Eigen::Index>(1, points_.cols() / kPointsForRank);
+    const Index stride = std::max<Index>(1, points_.cols() / kPointsForRank);
     Matrix6d information = Matrix6d::Zero();
     SurfacePoint at;
-    for (Eigen::Index i = 0; i < points_.cols(); i += stride) {
-      const Vector3d moved = pose * Vector3d(points_.col(i));
+    for (Index i = 0; i < points_.cols(); i += stride) {
+      const Vector3d moved = pose * Vector3d(points_.col(number(i)));
       std::uint32_t hint = hints_[static_cast<std::size_t>(i)];
       surface_.closest_block(moved, &at, &hint);
       if (at.on_border) continue;
@@ -122,7 +117,7 @@ class Fit {
       information += weight_at(options_.loss, at.distance, scale).weight * row * row.transpose();
     }
     const SymmetricEigen<6> solver(information);
-    Eigen::Index unseen = 0;
+    Index unseen = 0;
     while (unseen < 6 && !(solver.eigenvalues()[unseen] > kUnseen * solver.eigenvalues()[5])) ++unseen;
     return {solver.eigenvectors().rightCols(6 - unseen), solver.eigenvectors().leftCols(unseen)};
   }
@@ -133,10 +128,53 @@ class Fit {
   }
 
  private:
-  static constexpr double kNothing = -1;
+  static constexpr Index kBlock = ClosestPointFinder::kBlock;
+
+  WeightedSums pass_again() {
+    for (WeightedSums& sums : sums_) sums = {};
+    RegistrationPass pass{.points = static_cast<std::size_t>(points_.cols()), .sums = sums_, .distances = distances_};
+    pass.fingerprint = [this] { return fingerprint(); };
+    pass.compute = [this](std::size_t block) { compute(block); };
+    do_pass(pass, options_.work, options_.threads);
+    // In the order of the blocks, so that the sum does not depend on the threads.
+    WeightedSums all;
+    for (const WeightedSums& some : sums_) all += some;
+    return all;
+  }
+
+  void compute(std::size_t block) {
+    const Index first = static_cast<Index>(block) * kBlock, count = std::min(kBlock, points_.cols() - first);
+    Matrix3Xd& own = ordered_[block];
+    if (own.cols() == 0) {
+      own.resize(3, count);
+      for (Index i = 0; i < count; ++i) own.col(i) = points_.col(number(first + i));
+    }
+    const Matrix3Xd moved = (pose_.rotation * own).colwise() + pose_.translation;
+    std::vector<SurfacePoint> found(static_cast<std::size_t>(count));
+    surface_.closest_block(moved, found.data(), hints_.data() + first);
+    const Vector3d middle = reference(pose_);
+    BlockDistances& distances = distances_[block];
+    distances.within.clear();
+    distances.below = distances.all = 0;
+    for (Index i = 0; i < count; ++i) {
+      const SurfacePoint& at = found[static_cast<std::size_t>(i)];
+      if (at.on_border) {
+        ++sums_[block].beyond_border;
+        continue;
+      }
+      add(at, moved.col(i), moved.col(i) - middle, scale_, &sums_[block]);
+      const double distance = std::abs(at.distance);
+      ++distances.all;
+      if (distance < window_.low) ++distances.below;
+      if (distance >= window_.low && distance <= window_.high) distances.within.push_back(distance);
+    }
+  }
+
+  /// Of the point at a place in the order.
+  Index number(Index i) const { return order_.empty() ? i : Index{order_[static_cast<std::size_t>(i)]}; }
 
   /// Of a pass, without the surface, which the caller knows.
-  std::uint64_t fingerprint(const RigidTransform& pose, double scale) {
+  std::uint64_t fingerprint() {
     if (!of_points_) {
       Digest digest;
       digest.add_text(vector_instructions());
@@ -145,10 +183,9 @@ class Fit {
     }
     Digest digest;
     digest.add(*of_points_);
-    digest.add_numbers({pose.rotation.data(), 9});
-    digest.add_numbers({pose.translation.data(), 3});
-    digest.add_number(scale);
-    digest.add_number(options_.noise_mm);
+    digest.add_numbers({pose_.rotation.data(), 9});
+    digest.add_numbers({pose_.translation.data(), 3});
+    for (const double number : {scale_, window_.low, window_.high, options_.noise_mm}) digest.add_number(number);
     digest.add(static_cast<std::uint64_t>(options_.loss) * 2 + (options_.adaptive_distance ? 1 : 0));
     return digest.value();
   }
@@ -205,21 +242,25 @@ class Fit {
   }
 
   /// Neighbours follow each other, which the search for closest points is fastest with; a motion changes nothing in it.
-  static Matrix3Xd in_order(const Matrix3Xd& points, int threads) {
-    if (points.cols() <= ClosestPointFinder::kBlock || points.cols() > Eigen::Index{0xffffffff}) return points;
-    const std::vector<std::uint32_t> order =
-        hilbert_order(points, points.rowwise().minCoeff(), points.rowwise().maxCoeff(), threads);
-    Matrix3Xd ordered(3, points.cols());
-    for (Eigen::Index i = 0; i < points.cols(); ++i) ordered.col(i) = points.col(order[static_cast<std::size_t>(i)]);
-    return ordered;
+  static std::vector<std::uint32_t> order_of(const Matrix3Xd& points, int threads) {
+    if (points.cols() <= kBlock || points.cols() > Index{0xffffffff}) return {};
+    return hilbert_order(points, points.rowwise().minCoeff(), points.rowwise().maxCoeff(), threads);
   }
 
-  Matrix3Xd points_;
+  const Matrix3Xd& points_;
+  std::vector<std::uint32_t> order_;  // of the points; empty: their own
   const ClosestPointFinder& surface_;
   const SmoothSurface& smooth_;
   FineRegistrationOptions options_;
-  std::vector<double> distances_;
+  std::vector<WeightedSums> sums_;         // [blocks]
+  std::vector<BlockDistances> distances_;  // [blocks]
+  std::vector<Matrix3Xd> ordered_;         // [blocks] points in their order, of those that were computed here
   std::vector<std::uint32_t> hints_;
+  RigidTransform pose_;  // of the last pass, with its scale and window
+  double scale_ = 0;
+  DistanceWindow window_;
+  std::optional<double> median_;
+  double expected_median_ = 0, width_ = kFirstWidth;
   Vector3d middle_;
   double extent_ = 0;
   std::optional<std::uint64_t> of_points_;
@@ -228,9 +269,9 @@ class Fit {
 /// Robust standard deviation of the distances at the start; some of very many points tell it.
 double start_scale(const Matrix3Xd& points, const ClosestPointFinder& surface, const SmoothSurface& smooth,
                    const RigidTransform& pose, const FineRegistrationOptions& options, double extent) {
-  const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kPointsForRank);
+  const Index stride = std::max<Index>(1, points.cols() / kPointsForRank);
   Matrix3Xd some(3, (points.cols() + stride - 1) / stride);
-  for (Eigen::Index i = 0; i < some.cols(); ++i) some.col(i) = points.col(i * stride);
+  for (Index i = 0; i < some.cols(); ++i) some.col(i) = points.col(i * stride);
   Fit fit(some, surface, smooth, options);
   fit.pass(pose, extent);
   return fit.scale();
@@ -260,7 +301,9 @@ FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFind
   }
   RigidTransform& pose = result.mesh_from_scan;
   // A scale below what ends the iteration would only follow roundings.
-  double scale = std::max(start_scale(points, surface, smooth, pose, options, extent), movement);
+  const double first_scale = start_scale(points, surface, smooth, pose, options, extent);
+  double scale = std::max(first_scale, movement);
+  fit.expect_scale(first_scale);
   if (options.largest_scale_mm > 0) scale = std::min(scale, options.largest_scale_mm);
   Fit::Seen seen = fit.seen_motions(pose, scale);
   bool converged = false;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/registration/pose_candidates.h"
 #include "abbe/geometry/surface/point_cloud.h"
 #include "abbe/geometry/surface/surface_samples.h"
@@ -14,6 +15,8 @@ struct PairSearchOptions {
   std::size_t poses = 100000;   ///< tried
   std::size_t candidates = 48;  ///< kept, all different
   double reach_mm = 0;          ///< farther points count nothing
+  int threads = 0;              ///< 0: all; the result does not depend on it
+  WorkDriver work{};            ///< who scores the poses; its fingerprints do not know the surface
 };
 
 /// Rough poses of a scan on a part, without a guess, best first.

@@ -28,6 +28,10 @@ class PoseCandidates {
 
   /// Scores a pose and keeps it if it is among the best.
   void add(const RigidTransform& mesh_from_scan);
+  /// As many are kept as may be: a pose has to be better than one of them.
+  bool is_full() const { return best_.size() >= most_; }
+  /// Whether add() would keep a pose now. If not, it will not keep it later either.
+  bool is_worth_adding(const RigidTransform& mesh_from_scan) const { return score(mesh_from_scan) > least(); }
   /// Best first.
   std::vector<PoseCandidate> sorted() const;
 

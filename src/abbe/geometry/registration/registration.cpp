@@ -6,6 +6,7 @@
 
 #include "abbe/geometry/registration/pair_search.h"
 #include "abbe/geometry/registration/pose_difference.h"
+#include "abbe/geometry/registration/shared_fits.h"
 #include "abbe/geometry/registration/triple_search.h"
 
 namespace abbe {
@@ -89,7 +90,7 @@ struct RegistrationTarget::Inside {
   std::vector<RigidTransform> starts(const PointCloud& scan) const {
     if (options.start) return {*options.start};
     const double reach = 0.035 * diameter;
-    const DistanceGrid grid(surface, low, high, 2 * reach, 64, options.threads);
+    const DistanceGrid grid(surface, low, high, 2 * reach, 64, options.threads, options.work);
     const ThinnedScan thinned = thin_scan(scan, 0.03 * diameter);
     std::vector<RigidTransform> poses;
     const auto take = [&](const std::vector<PoseCandidate>& found) {
@@ -98,7 +99,8 @@ struct RegistrationTarget::Inside {
         poses.push_back(candidate.mesh_from_scan);
       }
     };
-    take(search_poses(samples, thinned, grid, {.seed = options.seed, .reach_mm = reach}));
+    take(search_poses(samples, thinned, grid,
+                      {.seed = options.seed, .reach_mm = reach, .threads = options.threads, .work = options.work}));
     // Points too far apart for normals of their own, or none that agree with the part's.
     if (poses.empty() || (!thinned.outwards && thinned.points.cols() < kEnoughNormals)) {
       take(search_triples(some_of(samples.points, kTripleSamples), thinned.places, grid,
@@ -161,15 +163,12 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan,
     }
     *fits = std::move(distinct);
   };
-  std::vector<FineRegistration> refined;
-  for (const RigidTransform& start : starts) {
-    FineRegistrationOptions options = in.fine_options();
-    options.largest_scale_mm = 0.015 * in.diameter;
-    options.iterations = 15;
-    options.movement_mm = 1e-4 * in.diameter;
-    options.threads = 1;
-    refined.push_back(register_finely(rough, in.surface, in.smooth, start, options));
-  }
+  std::vector<FitStart> from;
+  for (const RigidTransform& start : starts) from.push_back({start, 0.015 * in.diameter});
+  FineRegistrationOptions roughly = in.fine_options();
+  roughly.iterations = 15;
+  roughly.movement_mm = 1e-4 * in.diameter;
+  std::vector<FineRegistration> refined = register_from_each(rough, in.surface, in.smooth, from, roughly);
   const auto rank = [](const FineRegistration& a, const FineRegistration& b) { return a.scale_mm < b.scale_mm; };
   // By the loss of all points at one scale: half of them may fit exactly in many poses, as on a cylinder with flats.
   // Then the best pose has to come first, because those after it that differ by its undetermined motions are dropped.
@@ -187,13 +186,13 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan,
   for (Compared& one : ranked) refined.push_back(std::move(one.fine));
   drop_repeated(&refined);
   if (refined.size() > kCompared) refined.resize(kCompared);
-  for (FineRegistration& fine : refined) {
-    FineRegistrationOptions options = in.fine_options();
-    options.largest_scale_mm = std::max(fine.scale_mm, 1e-9 * in.diameter);
-    options.iterations = 40;
-    options.movement_mm = 1e-7 * in.diameter;
-    fine = register_finely(compared, in.surface, in.smooth, fine.mesh_from_scan, options);
+  from.clear();
+  for (const FineRegistration& fine : refined) {
+    from.push_back({fine.mesh_from_scan, std::max(fine.scale_mm, 1e-9 * in.diameter)});
   }
+  roughly.iterations = 40;
+  roughly.movement_mm = 1e-7 * in.diameter;
+  refined = register_from_each(compared, in.surface, in.smooth, from, roughly);
   std::stable_sort(refined.begin(), refined.end(), rank);
 
   report(60);

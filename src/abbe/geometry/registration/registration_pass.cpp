@@ -1,6 +1,7 @@
 #include "abbe/geometry/registration/registration_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "abbe/geometry/parallel_blocks.h"
@@ -8,9 +9,9 @@
 namespace abbe {
 namespace {
 
-/// Blocks that are handed out together.
-constexpr std::size_t kBlocksTogether = 8;
-constexpr std::size_t kLeastShared = 100000;  ///< points
+/// Blocks that are handed out together: few of few, so that every process gets some.
+constexpr std::size_t kMostTogether = 8, kGroups = 32;
+constexpr std::size_t kLeastShared = 16384;  ///< points
 
 /// Calls with the numbers of which the sums consist, in place.
 template <typename Take>
@@ -26,7 +27,43 @@ void for_numbers_of(WeightedSums& sums, const Take& take) {
   }
 }
 
+void pack_distances(const BlockDistances& distances, std::vector<std::byte>& bytes) {
+  for (const std::size_t count : {distances.below, distances.all, distances.within.size()}) {
+    const auto number = static_cast<double>(count);
+    pack_numbers({&number, 1}, bytes);
+  }
+  pack_numbers(distances.within, bytes);
+}
+
+void unpack_distances(std::span<const std::byte>& bytes, BlockDistances& distances) {
+  std::array<double, 3> counts{};
+  unpack_numbers(bytes, counts);
+  distances.below = static_cast<std::size_t>(counts[0]);
+  distances.all = static_cast<std::size_t>(counts[1]);
+  if (!(counts[2] >= 0 && counts[2] <= static_cast<double>(bytes.size() / sizeof(double)))) {
+    throw WorkError("distances of a block are cut off");
+  }
+  distances.within.resize(static_cast<std::size_t>(counts[2]));
+  unpack_numbers(bytes, distances.within);
+}
+
 }  // namespace
+
+std::optional<double> median_distance(std::span<const BlockDistances> blocks) {
+  std::size_t all = 0, below = 0;
+  std::vector<double> within;
+  for (const BlockDistances& block : blocks) {
+    all += block.all;
+    below += block.below;
+    within.insert(within.end(), block.within.begin(), block.within.end());
+  }
+  if (all == 0) return 0.0;
+  const std::size_t middle = all / 2;
+  if (middle < below || middle - below >= within.size()) return std::nullopt;
+  const auto at = within.begin() + static_cast<std::ptrdiff_t>(middle - below);
+  std::nth_element(within.begin(), at, within.end());
+  return *at;
+}
 
 void WeightedSums::operator+=(const WeightedSums& other) {
   hessian += other.hessian;
@@ -40,36 +77,29 @@ void WeightedSums::operator+=(const WeightedSums& other) {
 }
 
 void do_pass(const RegistrationPass& pass, const WorkDriver& driver, int threads) {
-  const std::size_t blocks = pass.sums.size(), points = pass.distances.size();
-  if (!driver || points < kLeastShared) return for_each_block(blocks, threads, pass.compute);
-  NumberedWork work{
-      .name = "registration", .blocks = (blocks + kBlocksTogether - 1) / kBlocksTogether, .threads = threads};
+  const std::size_t blocks = pass.sums.size();
+  if (!driver || pass.points < kLeastShared) return for_each_block(blocks, threads, pass.compute);
+  const std::size_t together = std::clamp<std::size_t>(blocks / kGroups, 1, kMostTogether);
+  NumberedWork work{.name = "registration", .blocks = (blocks + together - 1) / together, .threads = threads};
   work.for_all = true;
   work.is_kept = false;
+  work.in_ranges = true;
   work.fingerprint = pass.fingerprint;
-  const auto sums_of = [&](std::size_t group) {
-    const std::size_t first = group * kBlocksTogether;
-    return pass.sums.subspan(first, std::min(kBlocksTogether, blocks - first));
+  const auto for_blocks_of = [&](std::size_t group, const auto& visit) {
+    for (std::size_t block = group * together; block < std::min(blocks, (group + 1) * together); ++block) visit(block);
   };
-  const auto distances_of = [&](std::size_t group) {
-    const std::size_t together = kBlocksTogether * pass.block_points, first = group * together;
-    return pass.distances.subspan(first, std::min(together, points - first));
-  };
-  work.compute = [&](std::size_t group) {
-    const std::size_t first = group * kBlocksTogether;
-    for (std::size_t block = first; block < std::min(blocks, first + kBlocksTogether); ++block) pass.compute(block);
-  };
+  work.compute = [&](std::size_t group) { for_blocks_of(group, pass.compute); };
   work.pack = [&](std::size_t group, std::vector<std::byte>& bytes) {
-    for (WeightedSums& sums : sums_of(group)) {
-      for_numbers_of(sums, [&](std::span<double> numbers) { pack_numbers(numbers, bytes); });
-    }
-    pack_numbers(distances_of(group), bytes);
+    for_blocks_of(group, [&](std::size_t block) {
+      for_numbers_of(pass.sums[block], [&](std::span<double> numbers) { pack_numbers(numbers, bytes); });
+      pack_distances(pass.distances[block], bytes);
+    });
   };
   work.unpack = [&](std::size_t group, std::span<const std::byte> bytes) {
-    for (WeightedSums& sums : sums_of(group)) {
-      for_numbers_of(sums, [&](std::span<double> numbers) { unpack_numbers(bytes, numbers); });
-    }
-    unpack_numbers(bytes, distances_of(group));
+    for_blocks_of(group, [&](std::size_t block) {
+      for_numbers_of(pass.sums[block], [&](std::span<double> numbers) { unpack_numbers(bytes, numbers); });
+      unpack_distances(bytes, pass.distances[block]);
+    });
     require_unpacked(bytes);
   };
   do_work(driver, work);

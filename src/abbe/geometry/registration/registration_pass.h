@@ -4,7 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/registration/fine_registration.h"
@@ -21,11 +24,25 @@ struct WeightedSums {
   void operator+=(const WeightedSums& other);
 };
 
-/// Blocks of points, each of which leaves its sums and the distances of its points.
+/// Distances of the points of a block: those within a window, and how many there are.
+struct BlockDistances {
+  std::vector<double> within;
+  std::size_t below = 0, all = 0;
+};
+
+/// Between which distances the median is looked for; both ends included.
+struct DistanceWindow {
+  double low = 0, high = std::numeric_limits<double>::infinity();
+};
+
+/// Distance of which half of all are smaller. @returns nothing if it is not within the window; 0 without distances
+std::optional<double> median_distance(std::span<const BlockDistances> blocks);
+
+/// Blocks of points, each of which leaves its sums and distances.
 struct RegistrationPass {
-  std::size_t block_points = 0;
-  std::span<WeightedSums> sums;  ///< [blocks]
-  std::span<double> distances;   ///< [points]
+  std::size_t points = 0;
+  std::span<WeightedSums> sums;         ///< [blocks]
+  std::span<BlockDistances> distances;  ///< [blocks]
   std::function<void(std::size_t block)> compute;
   std::function<std::uint64_t()> fingerprint;  ///< of everything that they depend on
 };

@@ -4,9 +4,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "abbe/geometry/fits/numbers_for_test.h"
+#include "abbe/geometry/kept_blocks_for_test.h"
 #include "abbe/geometry/parts_for_test.h"
+#include "abbe/geometry/registration/registration_pass.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -51,6 +55,48 @@ double error_mm(const RigidTransform& a, const RigidTransform& b, const Triangle
     largest = std::max(largest, (difference * p - p).norm());
   }
   return largest;
+}
+
+TEST(Registration, SharedByOthersIsTheSameToTheLastBit) {
+  const TriangleMesh mesh = parts::stepped_box();
+  // So many that only distances near the median are exchanged.
+  const PosedScan scan = posed_scan_of(mesh, 110000, 5, 0.01, 0.1, Vector3d(1, 0.3, 0.5));
+  const Registration alone = RegistrationTarget(mesh).register_scan(scan.cloud);
+  ASSERT_EQ(alone.status, RegistrationStatus::ok);
+  test::KeptBlocks kept;
+  const Registration shared = RegistrationTarget(mesh, {.work = kept.keeping()}).register_scan(scan.cloud);
+  const Registration given = RegistrationTarget(mesh, {.work = kept.giving()}).register_scan(scan.cloud);
+  EXPECT_GT(kept.fingerprints.size(), 8U) << "the grid, the search, two kinds of fits, passes";
+  for (const Registration* other : {&shared, &given}) {
+    EXPECT_EQ(other->status, alone.status);
+    EXPECT_EQ(other->starts, alone.starts);
+    EXPECT_EQ(other->inlier_share, alone.inlier_share);
+    EXPECT_EQ(other->fine.mesh_from_scan.rotation, alone.fine.mesh_from_scan.rotation);
+    EXPECT_EQ(other->fine.mesh_from_scan.translation, alone.fine.mesh_from_scan.translation);
+    EXPECT_EQ(other->fine.covariance, alone.fine.covariance);
+    EXPECT_EQ(other->fine.scale_mm, alone.fine.scale_mm);
+    EXPECT_EQ(other->fine.iterations, alone.fine.iterations);
+  }
+}
+
+TEST(Registration, TheMedianIsFoundInAWindowOrSaidToBeOutside) {
+  const auto blocks_between = [](double low, double high) {
+    std::vector<BlockDistances> blocks(3);
+    for (int i = 0; i < 101; ++i) {
+      const double distance = (i * 37) % 101;
+      BlockDistances& block = blocks[static_cast<std::size_t>(i % 3)];
+      ++block.all;
+      if (distance < low) ++block.below;
+      if (distance >= low && distance <= high) block.within.push_back(distance);
+    }
+    return blocks;
+  };
+  for (const auto& [low, high] : {std::pair{0.0, 1e9}, std::pair{50.0, 50.0}, std::pair{45.0, 60.0}}) {
+    EXPECT_EQ(median_distance(blocks_between(low, high)), 50.0) << low;
+  }
+  EXPECT_EQ(median_distance(blocks_between(51, 90)), std::nullopt);
+  EXPECT_EQ(median_distance(blocks_between(10, 49)), std::nullopt);
+  EXPECT_EQ(median_distance(std::vector<BlockDistances>(2)), 0.0) << "no point lies beside the surface";
 }
 
 TEST(Registration, FindsAnyPoseOfPartialScansWithThirtyPercentOutliers) {

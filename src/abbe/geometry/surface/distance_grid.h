@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/surface/closest_point.h"
 
 namespace abbe {
@@ -14,8 +15,9 @@ class DistanceGrid {
   /// @param low, high  corners of the part's box, mm
   /// @param margin     distances are known up to this one outside of the box, mm
   /// @param cells      along the longest side
+  /// @param work       who computes them, for every process; its fingerprints do not know the surface
   DistanceGrid(const ClosestPointFinder& surface, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-               double margin, int cells, int threads);
+               double margin, int cells, int threads, const WorkDriver& work = {});
 
   /// Distance from the nearest point of the grid, mm; off by at most half a diagonal of a cell. Infinite outside.
   float at(const Eigen::Vector3d& point) const {
@@ -29,6 +31,8 @@ class DistanceGrid {
   }
 
  private:
+  void share(const ClosestPointFinder& surface, const Eigen::Matrix3Xd& points, int threads, const WorkDriver& work);
+
   Eigen::Vector3d start_;
   double inverse_step_ = 1;
   Eigen::Vector3i size_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "abbe/geometry/parallel_blocks.h"
 
@@ -21,29 +22,73 @@ std::uint32_t spread(std::uint32_t bits) {
   return (bits | bits << 2) & 0x09249249u;
 }
 
-/// Places on the curve of some cells, by Skilling's algorithm without branches.
-void places(std::array<std::array<std::uint32_t, kSome>, 3>* cells, std::uint32_t* place) {
-  // Not as a structured binding, which clang 14 does not capture.
-  std::array<std::uint32_t, kSome>&x = (*cells)[0], &y = (*cells)[1], &z = (*cells)[2];
-  const auto turn = [&](std::array<std::uint32_t, kSome>& axis, int bit) {
-    const std::uint32_t low = (1u << bit) - 1;
-    for (std::size_t i = 0; i < kSome; ++i) {
-      const std::uint32_t set = 0u - (axis[i] >> bit & 1u), exchanged = (x[i] ^ axis[i]) & low & ~set;
-      x[i] ^= exchanged ^ (low & set);
-      axis[i] ^= exchanged;
-    }
-  };
-  for (int bit = kBits - 1; bit > 0; --bit) {
-    for (std::size_t i = 0; i < kSome; ++i) x[i] ^= ((1u << bit) - 1) & (0u - (x[i] >> bit & 1u));
-    turn(y, bit);
-    turn(z, bit);
+/// How the curve runs through a cube: which axis takes each part in Skilling's algorithm, and which of them are counted
+/// backwards; and whether the cubes within are.
+struct CubeTurn {
+  std::array<std::uint32_t, 3> axis{0, 1, 2}, backwards{0, 0, 0};
+  std::uint32_t all_backwards = 0;
+
+  std::uint32_t number() const {
+    return ((axis[0] * 3 + axis[1]) * 8 + backwards[0] * 4 + backwards[1] * 2 + backwards[2]) * 2 + all_backwards;
   }
+};
+constexpr std::size_t kTurns = 144;
+
+/// Goes into one of the eight cubes within, which has a bit for each axis. @returns its place on the curve
+std::uint32_t enter_cube(CubeTurn& turn, std::uint32_t cube) {
+  std::array<std::uint32_t, 3> bit{};
+  for (std::size_t k = 0; k < 3; ++k) bit[k] = (cube >> (2 - turn.axis[k]) & 1u) ^ turn.backwards[k];
+  const std::uint32_t x = bit[0], y = bit[1] ^ x, z = bit[2] ^ y, all = turn.all_backwards;
+  turn.all_backwards ^= z;
+  turn.backwards[0] ^= bit[0];
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (bit[k] != 0) {
+      turn.backwards[0] ^= 1u;
+    } else {
+      std::swap(turn.axis[0], turn.axis[k]);
+      std::swap(turn.backwards[0], turn.backwards[k]);
+    }
+  }
+  return (x ^ all) << 2 | (y ^ all) << 1 | (z ^ all);
+}
+
+/// For each turn and each cube within a cube within: its place on the curve, six bits, and before them its turn.
+using CurveTable = std::array<std::uint16_t, kTurns * 64>;
+
+CurveTable curve_table() {
+  CurveTable table{};
+  CubeTurn turn;
+  for (turn.axis[0] = 0; turn.axis[0] < 3; ++turn.axis[0]) {
+    for (turn.axis[1] = 0; turn.axis[1] < 3; ++turn.axis[1]) {
+      if (turn.axis[1] == turn.axis[0]) continue;
+      turn.axis[2] = 3 - turn.axis[0] - turn.axis[1];
+      for (std::uint32_t bits = 0; bits < 16; ++bits) {
+        turn.backwards = {bits >> 3, bits >> 2 & 1u, bits >> 1 & 1u};
+        turn.all_backwards = bits & 1u;
+        for (std::uint32_t cube = 0; cube < 64; ++cube) {
+          CubeTurn within = turn;
+          const std::uint32_t outer = enter_cube(within, cube >> 3), inner = enter_cube(within, cube & 7u);
+          table[turn.number() * 64 + cube] = static_cast<std::uint16_t>(within.number() << 6 | outer << 3 | inner);
+        }
+      }
+    }
+  }
+  return table;
+}
+
+/// Places on the curve of some cells: Skilling's algorithm as a table of two steps at a time.
+void places(const std::array<std::array<std::uint32_t, kSome>, 3>& cells, std::uint32_t* place) {
+  static const CurveTable table = curve_table();
+  static const std::uint32_t begin = CubeTurn{}.number();
   for (std::size_t i = 0; i < kSome; ++i) {
-    y[i] ^= x[i];
-    z[i] ^= y[i];
-    std::uint32_t gray = 0;
-    for (int bit = kBits - 1; bit > 0; --bit) gray ^= ((1u << bit) - 1) & (0u - (z[i] >> bit & 1u));
-    place[i] = spread(x[i] ^ gray) << 2 | spread(y[i] ^ gray) << 1 | spread(z[i] ^ gray);
+    const std::uint32_t cubes = spread(cells[0][i]) << 2 | spread(cells[1][i]) << 1 | spread(cells[2][i]);
+    std::uint32_t turn = begin, at = 0;
+    for (int shift = 3 * (kBits - 2); shift >= 0; shift -= 6) {
+      const std::uint32_t entry = table[turn * 64 + (cubes >> shift & 63u)];
+      at = at << 6 | (entry & 63u);
+      turn = entry >> 6;
+    }
+    place[i] = at;
   }
 }
 
@@ -89,7 +134,7 @@ std::vector<std::uint32_t> hilbert_order(const Eigen::Ref<const Eigen::Matrix3Xd
           cells[k][i] = static_cast<std::uint32_t>(std::min(std::max(0.0, cell), kCells - 1.0));
         }
       }
-      places(&cells, place.data() + from);
+      places(cells, place.data() + from);
       for (std::size_t i = from; i < from + some; ++i) ++next[block][place[i] >> 2 * kBits];
     }
   });

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <utility>
 
 #include "abbe/geometry/fits/numbers_for_test.h"
 #include "abbe/geometry/parts_for_test.h"
@@ -33,6 +35,50 @@ TEST(HilbertOrder, PassesAllCellsOfACubeByStepsToNeighbours) {
     }
   }
   EXPECT_EQ(std::count(seen.begin(), seen.end(), true), points.cols());
+}
+
+/// Skilling's algorithm as published: coordinates to the place on the curve, whose bits are those of the axes in turn.
+std::uint32_t skilling_place(std::array<std::uint32_t, 3> x, int bits) {
+  const std::uint32_t top = 1u << (bits - 1);
+  for (std::uint32_t q = top; q > 1; q >>= 1) {
+    for (std::uint32_t& axis : x) {
+      if ((axis & q) != 0) {
+        x[0] ^= q - 1;
+      } else {
+        const std::uint32_t t = (x[0] ^ axis) & (q - 1);
+        x[0] ^= t;
+        axis ^= t;
+      }
+    }
+  }
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  std::uint32_t t = 0;
+  for (std::uint32_t q = top; q > 1; q >>= 1) {
+    if ((x[2] & q) != 0) t ^= q - 1;
+  }
+  std::uint32_t place = 0;
+  for (int bit = bits - 1; bit >= 0; --bit) {
+    for (const std::uint32_t axis : x) place = place << 1 | ((axis ^ t) >> bit & 1u);
+  }
+  return place;
+}
+
+TEST(HilbertOrder, IsThatOfSkillingsAlgorithmAtFullDepth) {
+  test::Numbers numbers(11);
+  Matrix3Xd points(3, 20000);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    std::array<std::uint32_t, 3> cell{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      cell[k] = static_cast<std::uint32_t>(numbers.uniform(0, 1024));
+      points(static_cast<Eigen::Index>(k), i) = cell[k] + 0.5;
+    }
+    expected.emplace_back(skilling_place(cell, 10), static_cast<std::uint32_t>(i));
+  }
+  std::sort(expected.begin(), expected.end());
+  const std::vector<std::uint32_t> order = hilbert_order(points, Vector3d::Zero(), Vector3d::Constant(1024), 1);
+  for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], expected[i].second) << i;
 }
 
 TEST(HilbertOrder, IsTheSameForAnyNumberOfThreadsAndKeepsTheOrderOfEqualPoints) {

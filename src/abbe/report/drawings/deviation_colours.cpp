@@ -1,10 +1,12 @@
 #include "abbe/report/drawings/deviation_colours.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "abbe/verify/evaluations/statistics.h"
+#include "abbe/verify/evaluations/values_at_places.h"
 
 namespace abbe {
 
@@ -23,11 +25,22 @@ Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> deviation_colours(std::span<const
   return colours;
 }
 
-double colour_range_mm(std::span<const double> deviation_mm) {
+DeviationAmounts deviation_amounts(std::span<const double> deviation_mm) {
+  if (deviation_mm.empty()) return {};
   std::vector<double> amounts;
   amounts.reserve(deviation_mm.size());
   for (const double value : deviation_mm) amounts.push_back(std::abs(value));
-  return colour_range_of_amount(percentile(amounts, 0.98));
+  constexpr double kShown = 0.98;
+  const double place = kShown * static_cast<double>(amounts.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const double share = place - static_cast<double>(below);
+  const std::array<std::size_t, 3> places = {amounts.size() / 2, below, std::min(below + 1, amounts.size() - 1)};
+  const std::vector<double> found = values_at_places(amounts, places);
+  return {found[0], share == 0 ? found[1] : found[1] + share * (found[2] - found[1])};
+}
+
+double colour_range_mm(std::span<const double> deviation_mm) {
+  return colour_range_of_amount(deviation_amounts(deviation_mm).for_colours_mm);
 }
 
 double colour_range_of_amount(double most) {

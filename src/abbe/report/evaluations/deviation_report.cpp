@@ -224,8 +224,11 @@ EvaluationReport deviation_report(const DeviationRequest& request, const Streame
   EvaluationReport report =
       report_of_figures(request, scan.points, std::move(facts), compared.deviation, compared.faces, range_mm);
   if (!compared.counted_mm.empty()) {
-    report.plots.push_back(distribution(scan.histogram->classes(-range_mm, range_mm, kDistributionClasses),
-                                        compared.deviation.all.sample.count, "Distribution of the deviations"));
+    const Histogram classes = scan.histogram != nullptr
+                                  ? scan.histogram->classes(-range_mm, range_mm, kDistributionClasses)
+                                  : histogram(compared.counted_mm, -range_mm, range_mm, kDistributionClasses);
+    report.plots.push_back(
+        distribution(classes, compared.deviation.all.sample.count, "Distribution of the deviations"));
   }
   add_notes(request, part, report);
   add_streamed(scan, report);

@@ -11,6 +11,8 @@ namespace {
 
 /// So many that most neighbours of a point are in its block, and so few that no process waits long for another.
 constexpr std::size_t kPointsOfBlock = 32768;
+/// So few that they stay in the cache of a processor.
+constexpr std::size_t kSearchedTogether = 8192;
 /// Two vectors, the distance and the rest.
 constexpr std::size_t kNumbersOfPoint = 8;
 
@@ -79,10 +81,12 @@ std::optional<std::vector<SurfacePoint>> closest_points(const ClosestPointFinder
     return digest.value();
   };
   work.compute = [&](std::size_t block) {
-    const std::vector<SurfacePoint> some = surface.closest(
-        points.middleCols(static_cast<Eigen::Index>(first_of(block)), static_cast<Eigen::Index>(count_of(block))), 1,
-        job.stop);
-    std::copy(some.begin(), some.end(), found.begin() + static_cast<std::ptrdiff_t>(first_of(block)));
+    for (std::size_t at = 0; at < count_of(block); at += kSearchedTogether) {
+      const std::size_t first = first_of(block) + at, count = std::min(kSearchedTogether, count_of(block) - at);
+      const std::vector<SurfacePoint> some = surface.closest(
+          points.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)), 1, job.stop);
+      std::copy(some.begin(), some.end(), found.begin() + static_cast<std::ptrdiff_t>(first));
+    }
     has[block] = 1;
   };
   work.pack = [&](std::size_t block, std::vector<std::byte>& bytes) {

@@ -1,6 +1,9 @@
 #pragma once
 
 // Internal to study: what find_deviations() and deviations_of_file() do alike.
+#include <optional>
+#include <string>
+
 #include "abbe/report/evaluations/deviation_report.h"
 #include "abbe/study/scans/scan_deviations.h"
 
@@ -19,5 +22,16 @@ SurfaceFaces faces_of_part(const ScanDeviationsRequest& request);
 void note_scan_elsewhere(const MeshFile& part, double middle_mm, ScanDeviations& result);
 
 DeviationRequest asked_of_report(const ScanDeviationsRequest& request);
+
+/// Deviations of a scan in memory where no picture of them is asked for, so that its points need not stay there.
+/// @returns nothing where the whole file has to be read
+std::optional<ScanDeviations> deviation_figures(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
+                                                const JobOptions& job);
+
+/// Everything that was asked for and that deviations depend on, beside the files and the pose.
+std::string deviation_options_text(const ScanDeviationsRequest& request, const PointCloudOptions& scan);
+
+/// Says in the notes of a scan how many points were left out because they are not finite.
+void note_left_out(PointCloudFile& scan);
 
 }  // namespace abbe

@@ -73,18 +73,6 @@ DeviationRequest asked_of_report(const ScanDeviationsRequest& request) {
   return asked;
 }
 
-namespace {
-
-/// Half of the amounts are larger.
-double middle_amount(std::vector<double> distance) {
-  for (double& d : distance) d = std::abs(d);
-  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
-  std::nth_element(distance.begin(), middle, distance.end());
-  return *middle;
-}
-
-}  // namespace
-
 ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOptions& job) {
   check_deviation_request(request);
   check_scan_and_part(request.scan, request.scan_file, request.part, request.part_file);
@@ -100,7 +88,7 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOp
                                  {.tolerance = request.tolerance, .largest_mm = request.largest_mm, .faces = faces});
   const DeviationRequest asked = asked_of_report(request);
   result.report = deviation_report(asked, request.scan, part, result.compared);
-  if (result.has_points()) note_scan_elsewhere(part, middle_amount(result.compared.counted_mm), result);
+  if (result.has_points()) note_scan_elsewhere(part, deviation_amounts(result.compared.counted_mm).middle_mm, result);
   apply_tolerances(request.tolerances, result.report);
   result.colour_mm = deviation_colour_range(asked, result.compared);
   if (request.page) {

@@ -28,18 +28,6 @@
 namespace abbe {
 namespace {
 
-std::string options_text(const ScanDeviationsRequest& request, const PointCloudOptions& scan) {
-  std::string text =
-      fmt::format("largest {} mm, faces {} {}", request.largest_mm, static_cast<int>(request.faces), request.crease);
-  if (request.tolerance) {
-    text += fmt::format(", band {} to {} mm", request.tolerance->lower_mm, request.tolerance->upper_mm);
-  }
-  if (scan.unit) text += fmt::format(", unit {}", file_length_name(*scan.unit));
-  for (const auto& [own, theirs] : scan.mapping.columns) text += fmt::format(", column {}={}", own, theirs);
-  for (const std::string& ignored : scan.mapping.ignore) text += ", ignored " + ignored;
-  return text;
-}
-
 /// The sums of one scan, which are made in pieces.
 class StreamJob {
  public:
@@ -112,7 +100,7 @@ class StreamJob {
     }
     for (const double value : pose.rotation.reshaped()) digest.add_number(value);
     for (const double value : pose.translation) digest.add_number(value);
-    digest.add_text(options_text(request_, scan_));
+    digest.add_text(deviation_options_text(request_, scan_));
     return digest.value();
   }
 
@@ -219,10 +207,7 @@ ScanDeviations StreamJob::result() {
   scan.format = blocks_.format();
   scan.unit = blocks_.unit();
   scan.left_out = not_finite_;
-  if (not_finite_ > 0) {
-    scan.notes.push_back(fmt::format("{} left out: not all of their coordinates are finite numbers",
-                                     not_finite_ == 1 ? "1 point is" : fmt::format("{} points are", not_finite_)));
-  }
+  note_left_out(scan);
   const FineHistogram& histogram = sums_.histogram();
   result.colour_mm =
       request_.colour_mm > 0 ? request_.colour_mm : colour_range_of_amount(histogram.percentile_of_amounts(0.98).value);
@@ -269,6 +254,7 @@ bool is_read_in_blocks(const std::string& scan_file, std::uint64_t above) {
 ScanDeviations deviations_of_file(ScanDeviationsRequest request, const PointCloudOptions& scan,
                                   const StreamingOptions& options, const JobOptions& job) {
   if (!is_read_in_blocks(request.scan_file, options.above)) {
+    if (std::optional<ScanDeviations> figures = deviation_figures(request, scan, job)) return std::move(*figures);
     request.scan = read_point_cloud(request.scan_file, scan);
     return find_deviations(request, job);
   }

@@ -139,6 +139,50 @@ TEST_F(StreamedDeviations, AreThoseOfTheScanInMemoryInEveryFormat) {
   }
 }
 
+TEST_F(StreamedDeviations, WithoutAPageTheReportOfAScanInMemoryHasTheSameBytesInEveryFormat) {
+  for (const std::string& file : {ply(), xyz(), write("scan.csv", point_cloud_csv(cloud_)), pcd(3)}) {
+    request_.page = false;
+    const ScanDeviations all = as_a_whole(file);
+    options_.above = kStreamedAbove;
+    const std::string expected = evaluation_json(all.report).dump();
+    for (const int threads : {1, 2}) {
+      request_.threads = threads;
+      const ScanDeviations found = in_blocks(file);
+      EXPECT_EQ(evaluation_json(found.report).dump(), expected) << file;
+      EXPECT_EQ(found.colour_mm, all.colour_mm);
+      EXPECT_EQ(found.elsewhere, all.elsewhere);
+      EXPECT_EQ(found.compared.counted_mm, all.compared.counted_mm);
+    }
+    // Another process packs its pieces, and the first one takes them.
+    std::vector<std::vector<std::byte>> pieces;
+    std::vector<std::uint64_t> fingerprints;
+    JobOptions job;
+    job.work = [&](const NumberedWork& work) {
+      pieces.assign(work.blocks, {});
+      fingerprints.push_back(work.fingerprint());
+      for (std::size_t piece = 0; piece < work.blocks; ++piece) {
+        work.compute(piece);
+        work.pack(piece, pieces[piece]);
+      }
+    };
+    EXPECT_FALSE(in_blocks(file, job).has_points()) << "the first process alone has the result";
+    const WorkDriver computing = job.work;
+    job.work = [&](const NumberedWork& work) {
+      for (std::size_t piece = work.blocks; piece-- > 0;) {
+        work.unpack(piece, pieces[piece]);
+        work.finished(piece);
+      }
+    };
+    EXPECT_EQ(evaluation_json(in_blocks(file, job).report).dump(), expected) << file;
+    request_.largest_mm *= 2;
+    job.work = computing;
+    in_blocks(file, job);
+    request_.largest_mm /= 2;
+    ASSERT_EQ(fingerprints.size(), 2U);
+    EXPECT_NE(fingerprints[0], fingerprints[1]) << "it depends on what was asked for";
+  }
+}
+
 TEST_F(StreamedDeviations, HaveTheSameBytesForAllThreadsAndBlocks) {
   const std::string file = xyz();
   options_.shown = 150;

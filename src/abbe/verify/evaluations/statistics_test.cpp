@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+
+#include "abbe/verify/evaluations/values_at_places.h"
 
 namespace abbe {
 namespace {
@@ -33,6 +37,38 @@ TEST(Statistics, PercentilesOfOneToAThousandAreExact) {
   EXPECT_DOUBLE_EQ(s.p95, 950);
   EXPECT_DOUBLE_EQ(s.p99, 990);
   EXPECT_DOUBLE_EQ(percentile(values, 0.123), 123);
+}
+
+TEST(Statistics, PercentilesOfManyValuesAreThoseOfAllInOrder) {
+  // Both signs, zeros, equal values, values far apart, and values that only their last bits tell apart.
+  std::vector<double> values;
+  std::uint64_t state = 1;
+  for (int i = 0; i < 60000; ++i) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    const double draw = static_cast<double>(state >> 11U) * 0x1p-53 - 0.5;
+    values.push_back(i % 7 == 0    ? 0.25
+                     : i % 11 == 0 ? 0
+                     : i % 13 == 0 ? 1e9 * draw
+                     : i % 5 == 0  ? 1 + 1e-12 * draw
+                                   : draw);
+  }
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  const std::vector<std::size_t> places = {59999, 0, 30000, 30000, 12345, 12346, 47000};
+  const std::vector<double> found = values_at_places(values, places);
+  for (std::size_t k = 0; k < places.size(); ++k) EXPECT_EQ(found[k], sorted[places[k]]) << places[k];
+  const std::vector<double> fractions = {0.05, 0.123, 1};
+  std::vector<double> percentiles(3);
+  const SampleStatistics s = sample_statistics(values, fractions, percentiles);
+  const auto expected = [&](double fraction) {
+    const double place = fraction * 59999, share = place - std::floor(place);
+    const auto below = static_cast<std::size_t>(place);
+    return sorted[below] + share * (sorted[std::min<std::size_t>(below + 1, 59999)] - sorted[below]);
+  };
+  EXPECT_EQ(s.median, expected(0.5));
+  EXPECT_EQ(s.p99, expected(0.99));
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(percentiles[k], expected(fractions[k])) << fractions[k];
+  EXPECT_EQ(percentile(values, 0.123), percentiles[1]);
 }
 
 TEST(Statistics, LeaveOutWhatIsNotCoveredAndSayHowMany) {

@@ -1,14 +1,19 @@
 #include "abbe/verify/parts/surface_deviation.h"
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
-namespace abbe {
-namespace {
+#include "abbe/verify/evaluations/values_at_places.h"
+#include "abbe/verify/parts/deviation_statistics.h"
 
-DeviationStatistics statistics_of(std::span<const double> values, const std::optional<DeviationTolerance>& tolerance) {
+namespace abbe {
+DeviationStatistics deviation_statistics(std::span<const double> values,
+                                         const std::optional<DeviationTolerance>& tolerance) {
   DeviationStatistics result;
-  result.sample = sample_statistics(values);
+  constexpr std::array<double, 3> kFractions = {0.05, 0.25, 0.75};
+  std::array<double, 3> percentiles{};
+  result.sample = sample_statistics(values, kFractions, percentiles);
   if (values.empty()) return result;
   double sum = 0;
   std::size_t within = 0;
@@ -19,13 +24,11 @@ DeviationStatistics statistics_of(std::span<const double> values, const std::opt
   const double count = static_cast<double>(values.size());
   result.rms_about_mean = std::sqrt(sum / count);
   result.within = static_cast<double>(within) / count;
-  result.p5 = percentile(values, 0.05);
-  result.p25 = percentile(values, 0.25);
-  result.p75 = percentile(values, 0.75);
+  result.p5 = percentiles[0];
+  result.p25 = percentiles[1];
+  result.p75 = percentiles[2];
   return result;
 }
-
-}  // namespace
 
 SurfaceDeviation surface_deviation(std::span<const SurfacePoint> closest, const SurfaceDeviationOptions& options) {
   SurfaceDeviation result;
@@ -52,8 +55,9 @@ SurfaceDeviation surface_deviation(std::span<const SurfacePoint> closest, const 
     }
     regions[options.region_of_triangle[point.triangle]].push_back(point.distance);
   }
-  result.all = statistics_of(all, options.tolerance);
-  for (const std::vector<double>& region : regions) result.regions.push_back(statistics_of(region, options.tolerance));
+  result.all = deviation_statistics(all, options.tolerance);
+  for (const std::vector<double>& region : regions)
+    result.regions.push_back(deviation_statistics(region, options.tolerance));
   return result;
 }
 

@@ -1,0 +1,33 @@
+#pragma once
+
+// Internal to study: deviations of the points of a scan for figures alone, without a picture.
+#include <optional>
+#include <vector>
+
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/geometry/surface/closest_point.h"
+#include "abbe/geometry/surface/surface_faces.h"
+#include "abbe/study/job_options.h"
+#include "abbe/study/scans/scan_deviations.h"
+
+namespace abbe {
+
+/// Deviations of the points that count, mm, in the order of the scan.
+struct CountedDeviations {
+  PointCloudFile scan;     ///< without its points
+  std::size_t points = 0;  ///< of the scan
+  std::size_t beyond_border = 0, too_far = 0;
+  std::vector<double> all;
+  std::vector<std::vector<double>> faces;  ///< [faces] of the points nearest to each
+};
+
+/// Compares the scan of a request with its part while it is read, piece by piece: pieces are numbered work, so several
+/// processes also share the reading. What is passed over: normals, and properties that are no coordinates.
+/// @param job  progress: bytes that were compared
+/// @returns nothing where the first one of several processes has the result
+/// @throws InputError also for a file that PointCloudBlocks does not read, or that changes meanwhile; Stopped
+std::optional<CountedDeviations> counted_deviations(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
+                                                    const ClosestPointFinder& surface, const SurfaceFaces& faces,
+                                                    const JobOptions& job);
+
+}  // namespace abbe

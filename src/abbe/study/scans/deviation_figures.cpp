@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/point_cloud_blocks.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/drawings/deviation_colours.h"
+#include "abbe/report/evaluations/deviation_report.h"
+#include "abbe/report/words/evaluation_text.h"
+#include "abbe/study/scans/counted_deviations.h"
+#include "abbe/study/scans/deviation_steps.h"
+#include "abbe/verify/parts/deviation_statistics.h"
+
+namespace abbe {
+
+std::string deviation_options_text(const ScanDeviationsRequest& request, const PointCloudOptions& scan) {
+  std::string text =
+      fmt::format("largest {} mm, faces {} {}", request.largest_mm, static_cast<int>(request.faces), request.crease);
+  if (request.tolerance) {
+    text += fmt::format(", band {} to {} mm", request.tolerance->lower_mm, request.tolerance->upper_mm);
+  }
+  if (scan.unit) text += fmt::format(", unit {}", file_length_name(*scan.unit));
+  for (const auto& [own, theirs] : scan.mapping.columns) text += fmt::format(", column {}={}", own, theirs);
+  for (const std::string& ignored : scan.mapping.ignore) text += ", ignored " + ignored;
+  return text;
+}
+
+void note_left_out(PointCloudFile& scan) {
+  if (scan.left_out == 0) return;
+  scan.notes.push_back(fmt::format("{} left out: not all of their coordinates are finite numbers",
+                                   scan.left_out == 1 ? "1 point is" : fmt::format("{} points are", scan.left_out)));
+}
+
+namespace {
+
+/// Whether the reader of pieces knows the file.
+bool fits_into_pieces(const std::string& scan_file) {
+  const MappedFile file(scan_file);
+  return point_cloud_kind(file.text(), scan_file).in_blocks;
+}
+
+/// Deviations of a scan in memory where no picture of them is asked for: the points need not stay there.
+/// @throws InputError
+ScanDeviations figures_alone(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
+                             const JobOptions& job) {
+  check_deviation_request(request);
+  if (request.part.mesh.size() == 0) {
+    throw InputError({.file = request.part_file}, "there is no triangle", "the surface of a part");
+  }
+  const ClosestPointFinder surface(request.part.mesh, request.threads);
+  ScanDeviations result;
+  result.compared.faces = faces_of_part(request);
+  std::optional<CountedDeviations> counted = counted_deviations(request, scan, surface, result.compared.faces, job);
+  if (!counted) return result;
+  SurfaceDeviation& deviation = result.compared.deviation;
+  deviation.all = deviation_statistics(counted->all, request.tolerance);
+  for (const std::vector<double>& face : counted->faces) {
+    deviation.regions.push_back(deviation_statistics(face, request.tolerance));
+  }
+  deviation.beyond_border = counted->beyond_border;
+  deviation.too_far = counted->too_far;
+  result.compared.counted_mm = std::move(counted->all);
+  const DeviationAmounts amounts = deviation_amounts(result.compared.counted_mm);
+  result.colour_mm = request.colour_mm > 0 ? request.colour_mm : colour_range_of_amount(amounts.for_colours_mm);
+  result.report =
+      deviation_report(asked_of_report(request), StreamedScan{.file = &counted->scan, .points = counted->points},
+                       request.part, result.compared, result.colour_mm);
+  if (result.has_points()) note_scan_elsewhere(request.part, amounts.middle_mm, result);
+  apply_tolerances(request.tolerances, result.report);
+  return result;
+}
+
+}  // namespace
+
+std::optional<ScanDeviations> deviation_figures(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
+                                                const JobOptions& job) {
+  if (request.page || !fits_into_pieces(request.scan_file)) return std::nullopt;
+  JobOptions shared = job;
+  bool has_begun = false;
+  if (job.work) {
+    shared.work = [&](const NumberedWork& work) {
+      has_begun = true;
+      job.work(work);
+    };
+  }
+  try {
+    return figures_alone(request, scan, shared);
+  } catch (const InputError&) {
+    // A table of another form, perhaps; or the reader of whole files says what is wrong. Once several processes have
+    // begun, another one may have found nothing wrong.
+    if (has_begun) throw;
+    return std::nullopt;
+  }
+}
+
+}  // namespace abbe
