@@ -90,7 +90,7 @@ std::optional<MpiGroup::Message> MpiGroup::look() {
 MpiGroup::Message MpiGroup::receive(int from, const std::stop_token& stop) {
   // MPI_Recv() would keep a processor busy, which a computing process needs.
   using namespace std::chrono_literals;
-  constexpr int kBusyLooks = 2000;
+  constexpr int kBusyLooks = 400;
   MPI_Status status;
   int has_come = 0;
   for (int look = 0;;) {
@@ -100,7 +100,7 @@ MpiGroup::Message MpiGroup::receive(int from, const std::stop_token& stop) {
     if (look < kBusyLooks) {
       ++look;
     } else {
-      std::this_thread::sleep_for(200us);
+      std::this_thread::sleep_for(50us);
     }
   }
   int count = 0;
