@@ -139,7 +139,7 @@ def plan_of_many(runs, items):
     text = text.replace('"../machines/', f'"{runs.arguments.examples.resolve()}/machines/', 1)
     text = text.replace("\nseed = 5\n", "\nseed = 5\nthreads = 1\n", 1)
     text = re.sub(r"(?m)^\[\[setup\.plan\]\]\n(?:[^\[\n].*\n)+", "", text)  # or else its grid is what there is
-    text += f"\n[plan]\nreadings = 100\nposes = {items // 12}\n"
+    text += f"\n[plan]\nreadings = 65\nposes = {items // 12}\n"
     if "\nthreads = 1\n" not in text or "setup.plan" in text:
         sys.exit("the study of the tracking interferometer has changed")
     study = runs.folder / f"plan-of-{items}.study.toml"
@@ -188,7 +188,7 @@ def main():
     parser.add_argument("--points", type=int, default=16000000, help="of a scan, at least 8000")
     parser.add_argument("--readings", type=int, default=480, help="of a plan, at least 400")
     parser.add_argument("--apart", action="store_true", help="also run two processes that share nothing")
-    parser.add_argument("--candidates", type=int, default=1200000, help="of a plan of many, at least 1000")
+    parser.add_argument("--candidates", type=int, default=1000000, help="of a plan of many, at least 1000")
     parser.add_argument("--only", nargs="+", metavar="KIND", help="monte-carlo, map, deviate, deviate-in-blocks, "
                         "register, plan, plan-of-many; default: all")
     arguments = parser.parse_args()

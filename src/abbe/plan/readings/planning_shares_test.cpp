@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <barrier>
-#include <optional>
 #include <thread>
 
 #include "abbe/errors/random_stream.h"
@@ -67,7 +66,7 @@ struct SharedCase {
 
 class SharedPlan : public ::testing::TestWithParam<SharedCase> {
  protected:
-  SharedPlan() : candidates_(mirrored_candidates(3500, 3, 24)) {
+  SharedPlan() : candidates_(mirrored_candidates(6001, 3, 24)) {
     if (GetParam().variance) {
       options_.criterion = PlanningCriterion::variance;
       options_.functionals.resize(12, 24);
@@ -85,23 +84,22 @@ class SharedPlan : public ::testing::TestWithParam<SharedCase> {
       for (std::uint32_t i = 0; i < candidates_.count(); ++i) options_.group.push_back(i % 7);
       options_.most_of_group = {3, 5, 2, 9, 4, 6, 8};
     }
-    space_.emplace(candidates_, Eigen::MatrixXd());
   }
 
   std::vector<ReadingPlan> planned(int threads, const WorkInStep& in_step = {}) const {
     PlanningOptions options = options_;
     options.threads = threads;
     options.in_step = in_step;
-    std::vector<ReadingPlan> all = {plan_readings(*space_, options)};
+    const PlanningSpace space(candidates_, Eigen::MatrixXd(), in_step);
+    std::vector<ReadingPlan> all = {plan_readings(space, options)};
     options.most_passes = 2;
     const std::vector<std::size_t> counts = {5, 20, 30, 37, 60};
-    for (ReadingPlan& plan : plan_curve(*space_, options, counts)) all.push_back(std::move(plan));
+    for (ReadingPlan& plan : plan_curve(space, options, counts)) all.push_back(std::move(plan));
     return all;
   }
 
   PlanningCandidates candidates_;
   PlanningOptions options_;
-  std::optional<PlanningSpace> space_;
 };
 
 void expect_same(const std::vector<ReadingPlan>& found, const std::vector<ReadingPlan>& expected) {
@@ -157,7 +155,7 @@ TEST(SharedPlanTest, HasAnotherFingerprintWhereAnythingIsAnother) {
     }
     return found;
   };
-  const PlanningCandidates candidates = mirrored_candidates(3500, 3, 24);
+  const PlanningCandidates candidates = mirrored_candidates(6001, 3, 24);
   PlanningOptions options;
   options.count = 30;
   const std::uint64_t expected = fingerprint(candidates, options);
