@@ -93,14 +93,15 @@ MpiGroup::Message MpiGroup::receive(int from, const std::stop_token& stop) {
   constexpr int kBusyLooks = 400;
   MPI_Status status;
   int has_come = 0;
-  for (int look = 0;;) {
+  for (int look = 0, sleeps = 0;;) {
     MPI_Iprobe(from, MPI_ANY_TAG, MPI_COMM_WORLD, &has_come, &status);
     if (has_come != 0) break;
     stop_if_asked(stop);
     if (look < kBusyLooks) {
       ++look;
     } else {
-      std::this_thread::sleep_for(50us);
+      // The longer it has waited, the longer it sleeps: looking takes processor time too.
+      std::this_thread::sleep_for(std::clamp(5us * ++sleeps, 50us, 500us));
     }
   }
   int count = 0;
