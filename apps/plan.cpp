@@ -35,7 +35,7 @@ void add_plan_command(CommandLine& line) {
     line.share([options](ProcessGroup* processes) -> int {
       const Study study = read_study(options->study);
       SharedWork work(processes, "", tell_sentence);
-      const StudyPlan result = plan_study(study, {.progress = Progress("planning").callback(), .work = work.driver()});
+      const StudyPlan result = plan_study(study, work.job(Progress("planning").callback()));
       if (!work.is_first()) return kDone;
       const bool done = result.plan.status == PlanningStatus::done;
       if (done && !options->output.empty()) write_file_atomically(options->output, plan_csv(study, result));

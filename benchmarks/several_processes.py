@@ -12,7 +12,7 @@ that is the time on the clock of a machine with nothing else to do. The model is
 a: start, input and all that every process does by itself; b: computation of an item; c: what the first process spends
 on an item that another one has computed. a and b come from one process, c from two. Items are samples, poses or points;
 of a plan they are the readings to be chosen, with which the time grows faster than in proportion, so that its a, b and
-c hold between both sizes only.
+c hold between both sizes only. Of a plan of many they are candidates.
 """
 
 import argparse
@@ -56,6 +56,19 @@ class Runs:
         if done.returncode != 0:
             sys.exit(done.stderr)
         return clock, sum(map(float, self.times.read_text().split())) / processes
+
+    def measure_apart(self, words):
+        """The same of two processes that share nothing, each on a core of its own: what the machine itself loses."""
+        self.times.unlink(missing_ok=True)
+        begin = time.perf_counter()
+        jobs = []
+        for core in sorted(os.sched_getaffinity(0))[:2]:
+            own = [f"{word}-{core}" if word == self.folder / "results" else str(word) for word in words]
+            jobs.append(subprocess.Popen([sys.executable, self.timed, self.times, self.arguments.abbe, *own],
+                                         stdout=subprocess.DEVNULL, preexec_fn=lambda: os.sched_setaffinity(0, {core})))
+        if any([job.wait() for job in jobs]):
+            sys.exit("a process by itself has failed")
+        return time.perf_counter() - begin, sum(map(float, self.times.read_text().split())) / 2
 
 
 def monte_carlo(runs, items):
@@ -120,12 +133,32 @@ def plan(runs, items):
     return ("plan", study)
 
 
+def plan_of_many(runs, items):
+    """Lengths from four stations to three reflectors: twelve candidates at every pose."""
+    text = (runs.arguments.examples / "three_axis/tracking-interferometer.study.toml").read_text()
+    text = text.replace('"../machines/', f'"{runs.arguments.examples.resolve()}/machines/', 1)
+    text = text.replace("\nseed = 5\n", "\nseed = 5\nthreads = 1\n", 1)
+    text = re.sub(r"(?m)^\[\[setup\.plan\]\]\n(?:[^\[\n].*\n)+", "", text)  # or else its grid is what there is
+    text += f"\n[plan]\nreadings = 65\nposes = {items // 12}\n"
+    if "\nthreads = 1\n" not in text or "setup.plan" in text:
+        sys.exit("the study of the tracking interferometer has changed")
+    study = runs.folder / f"plan-of-{items}.study.toml"
+    study.write_text(text)
+    return ("plan", study)
+
+
+APART = "apart"
+
+
 def report(name, runs, words, sizes):
     best = {}
     for _ in range(runs.arguments.rounds):
         for items in sizes:
-            for processes in (1, 2):
-                found = runs.measure(processes, words(runs, items))
+            for processes in (1, 2, APART):
+                if processes == APART and (items != sizes[-1] or not runs.arguments.apart):
+                    continue
+                given = words(runs, items)
+                found = runs.measure_apart(given) if processes == APART else runs.measure(processes, given)
                 before = best.get((items, processes), found)
                 best[items, processes] = tuple(map(min, before, found))
     small, large = sizes
@@ -138,6 +171,10 @@ def report(name, runs, words, sizes):
         print(f"{name}, {kind}: {large} items in {one:.2f} s with 1, {two:.2f} s with 2 processes: "
               f"efficiency {one / two / 2:.3f}; of an item alone {slope_one / slope_two / 2:.3f}; "
               f"a = {a:.2f} s, b = {1e6 * b:.2f} us, c = {1e6 * c:.2f} us")
+        if (large, APART) in best:
+            apart = best[large, APART][k]
+            print(f"{name}, {kind}: two that share nothing take {apart:.2f} s each; "
+                  f"efficiency against these {apart / two / 2:.3f}")
 
 
 def main():
@@ -150,15 +187,17 @@ def main():
     parser.add_argument("--poses", type=int, default=400000)
     parser.add_argument("--points", type=int, default=16000000, help="of a scan, at least 8000")
     parser.add_argument("--readings", type=int, default=480, help="of a plan, at least 400")
+    parser.add_argument("--apart", action="store_true", help="also run two processes that share nothing")
+    parser.add_argument("--candidates", type=int, default=1000000, help="of a plan of many, at least 1000")
     parser.add_argument("--only", nargs="+", metavar="KIND", help="monte-carlo, map, deviate, deviate-in-blocks, "
-                        "register, plan; default: all")
+                        "register, plan, plan-of-many; default: all")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(arguments, pathlib.Path(folder))
         kinds = {"monte-carlo": (monte_carlo, arguments.samples), "map": (poses, arguments.poses),
                  "deviate": (deviations, arguments.points),
                  "deviate-in-blocks": (streamed_deviations, arguments.points),
-                 "register": (registration, arguments.points), "plan": (plan, arguments.readings)}
+                 "register": (registration, arguments.points), "plan": (plan, arguments.readings), "plan-of-many": (plan_of_many, arguments.candidates)}
         for name in arguments.only or kinds:
             if name not in kinds:
                 sys.exit(f"{name}: unknown; expected {', '.join(kinds)}")

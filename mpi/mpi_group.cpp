@@ -90,17 +90,18 @@ std::optional<MpiGroup::Message> MpiGroup::look() {
 MpiGroup::Message MpiGroup::receive(int from, const std::stop_token& stop) {
   // MPI_Recv() would keep a processor busy, which a computing process needs.
   using namespace std::chrono_literals;
-  constexpr int kBusyLooks = 2000;
+  constexpr int kBusyLooks = 400;
   MPI_Status status;
   int has_come = 0;
-  for (int look = 0;;) {
+  for (int look = 0, sleeps = 0;;) {
     MPI_Iprobe(from, MPI_ANY_TAG, MPI_COMM_WORLD, &has_come, &status);
     if (has_come != 0) break;
     stop_if_asked(stop);
     if (look < kBusyLooks) {
       ++look;
     } else {
-      std::this_thread::sleep_for(200us);
+      // The longer it has waited, the longer it sleeps: looking takes processor time too.
+      std::this_thread::sleep_for(std::clamp(5us * ++sleeps, 50us, 500us));
     }
   }
   int count = 0;

@@ -6,6 +6,7 @@
 #include <list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@ namespace abbe {
 /// Every process does what the command says from the same files. Sums over readings: each process sums a range of
 /// pieces, the first one adds them all up and sends the sums to the others; what it adds up does not depend on their
 /// number (abbe/identify/sums/sum_of_readings.h). Numbered work: the first process hands out blocks and takes results.
+/// Work in step: the first one receives what the others give, and sends it to all.
 class MpiGroup : public ProcessGroup {
  public:
   MpiGroup(int* argc, char*** argv);
@@ -29,6 +31,7 @@ class MpiGroup : public ProcessGroup {
   bool is_first() const override { return rank_ == 0; }
   Summation summation(const Study& study) override;
   void work(const NumberedWork& work) override;
+  WorkInStep in_step() override;
 
   /// Of all but the first, when its command has ended: waits for the end of the first process, which fails if it still
   /// counted on this one.
@@ -38,7 +41,7 @@ class MpiGroup : public ProcessGroup {
  private:
   class FirstOfWork;
   class OtherOfWork;
-  enum Tag { kSum = 1, kAsk, kHandedOut, kResults, kWorkDone, kLeft, kEnd };
+  enum Tag { kSum = 1, kAsk, kHandedOut, kResults, kWorkDone, kLeft, kEnd, kInStep };
 
   /// What has come from a process.
   struct Message {
@@ -46,6 +49,7 @@ class MpiGroup : public ProcessGroup {
     std::vector<std::byte> bytes;
   };
 
+  std::vector<std::vector<std::byte>> gather(std::uint64_t fingerprint, std::span<const std::byte> own);
   SumOfReadings sum(PieceSummer& summer, const SumRequest& request, int threads, const std::stop_token& stop);
   /// A message that is under way; its bytes stay until the receiver has them.
   struct Sending {

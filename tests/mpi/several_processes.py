@@ -384,29 +384,10 @@ def deviations_after_a_kill(runs):
         require(not kept.exists(), "left over after the results are whole")
 
 
-def plans(runs):
-    """The readings of a plan, and the grids that it is compared with."""
-    study = runs.out / "trunnion.study.toml"
-    text = (runs.examples / "trunnion/trunnion.study.toml").read_text()
-    text = text.replace('"../machines/', f'"{runs.examples}/machines/', 1)
-    text = text.replace("\nposes = 1500\n", "\nposes = 300\n", 1).replace("readings = 240\n", "readings = 100\n", 1)
-    study.write_text(text)
-    require("poses = 300" in study.read_text() and "readings = 100" in study.read_text(), "the study has changed")
-    expected = None
-    for processes in (0, 2, 3):
-        words = ("plan", study, "-o", runs.out / "poses.csv", "--report", runs.out / "page.html", "--json", "--force")
-        done = runs.together(processes, *words) if processes else runs.alone(*words)
-        require(done.returncode == 0, processes, done.stderr)
-        found = [done.stdout, *((runs.out / name).read_bytes() for name in ("poses.csv", "page.html"))]
-        expected = expected or found
-        require(found == expected, processes, "processes: other bytes")
-    require("all axes together" in expected[0], "no grids in", expected[0])
-
-
 CASES = {"MonteCarlo": monte_carlo, "Maps": maps, "KilledAndResumed": killed_and_resumed, "TwoJobs": two_jobs,
          "ReadAgain": read_again, "ReadAgainAfterAKill": read_again_after_a_kill,
          "Deviations": deviations, "StreamedDeviations": streamed_deviations,
-         "DeviationsAfterAKill": deviations_after_a_kill, "Plans": plans,
+         "DeviationsAfterAKill": deviations_after_a_kill,
          "SameBytes": same_bytes, "WorkersOfOtherFiles": other_files, "LostProcess": lost_process,
          "OtherSubcommands": other_subcommands, "MissingProgram": missing_program}
 

@@ -6,6 +6,7 @@
 
 #include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/stopped.h"
+#include "abbe/geometry/work_in_step.h"
 
 namespace abbe {
 
@@ -16,6 +17,7 @@ struct JobOptions {
   std::stop_token stop{};  ///< checked whenever progress is reported
   /// Who does the numbered work of a job; empty: this process. Jobs that have none do not use it.
   WorkDriver work{};
+  WorkInStep in_step{};  ///< processes that do the same job; jobs that have no such work do not use it
 };
 
 /// A callback for the work of a job: stops it if that was requested, otherwise reports the progress.

@@ -2,6 +2,7 @@
 
 #include "abbe/formats/study/study.h"
 #include "abbe/geometry/numbered_work.h"
+#include "abbe/geometry/work_in_step.h"
 #include "abbe/identify/sums/sum_of_readings.h"
 
 namespace abbe {
@@ -17,6 +18,8 @@ class ProcessGroup {
   /// Shares the blocks out. Every process calls it with the same work. What is there already, and
   /// NumberedWork::finished, count in the first one.
   virtual void work(const NumberedWork& work) = 0;
+  /// Of computations that every process does in step with the others.
+  virtual WorkInStep in_step() = 0;
 };
 
 }  // namespace abbe

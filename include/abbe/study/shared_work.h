@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "abbe/study/job_options.h"
 #include "abbe/study/process_group.h"
 
 namespace abbe {
@@ -28,6 +29,8 @@ class SharedWork {
   Summation summation(const Study& study) const;
   /// As RunOptions::work. Not to be used after this object has ended.
   WorkDriver driver() const;
+  /// Of a job that shares its numbered work and its work in step. Not to be used after this object has ended.
+  JobOptions job(std::function<void(std::size_t done, std::size_t total)> progress) const;
   /// The output is whole: kept blocks go.
   void done();
 

@@ -25,6 +25,12 @@ WorkDriver SharedWork::driver() const {
   return [checkpoint = checkpoint_.get(), inner](const NumberedWork& work) { checkpoint->work(work, inner); };
 }
 
+JobOptions SharedWork::job(std::function<void(std::size_t done, std::size_t total)> progress) const {
+  JobOptions options{.progress = std::move(progress), .work = driver()};
+  if (processes_ != nullptr) options.in_step = processes_->in_step();
+  return options;
+}
+
 void SharedWork::done() {
   if (checkpoint_) checkpoint_->remove();
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "abbe/geometry/work_in_step.h"
 #include "abbe/plan/readings/planning_space.h"
 
 namespace abbe {
@@ -36,6 +37,7 @@ struct PlanningOptions {
                                 ///< per seen direction, variance: relative; 0: if no exchange helps
   std::uint64_t seed = 1;
   int threads = 0;                             ///< 0: all; the result does not depend on it
+  WorkInStep in_step{};                        ///< processes that make the same choice, which then share the work
   std::function<void(double share)> progress;  ///< 0 to 1, called from one thread
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "abbe/geometry/work_in_step.h"
 #include "abbe/identify/planning_candidates.h"
 
 namespace abbe {
@@ -21,7 +22,11 @@ class PlanningSpace {
   /// @param known      [rows, p] priors and readings taken already, or without rows
   /// @param threshold  singular values of the scaled rows below this part of the largest are not seen
   /// @throws std::invalid_argument for sizes that do not agree, costs not above zero, or numbers that are not finite
-  PlanningSpace(const PlanningCandidates& candidates, const Eigen::MatrixXd& known, double threshold = 1e-11);
+  PlanningSpace(const PlanningCandidates& candidates, const Eigen::MatrixXd& known, double threshold = 1e-11)
+      : PlanningSpace(candidates, known, WorkInStep(), threshold) {}
+  /// @param in_step  processes that make the same space, which then share the work
+  PlanningSpace(const PlanningCandidates& candidates, const Eigen::MatrixXd& known, const WorkInStep& in_step,
+                double threshold = 1e-11);
 
   std::size_t count() const { return first_row_.size() - 1; }
   std::size_t parameter_count() const { return static_cast<std::size_t>(estimates_from_seen_.rows()); }

@@ -17,24 +17,24 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Percentiles of the rows of `values`, which are quantities; linear interpolation between order statistics (JCGM 101,
-/// 7.7). Sorting takes long where there are few readings, so it is shared too.
-class RowPercentiles {
+/// What is found of quantities over all samples. A process computes only the quantities of its own blocks, since the
+/// product takes as long as many samples do, and so does sorting.
+class QuantityFigures {
  public:
-  static constexpr std::size_t kRows = 4;  // of a block
-
-  RowPercentiles(const Eigen::MatrixXd& values, const std::vector<double>& probabilities)
-      : values_(values),
+  /// @param factor  null: the quantities are the changes; or else, [quantities, p], they are its product with these
+  QuantityFigures(const Eigen::MatrixXd& changes, const Eigen::MatrixXd* factor,
+                  const std::vector<double>& probabilities)
+      : changes_(changes),
+        factor_(factor),
         probabilities_(probabilities),
-        found_(static_cast<Index>(probabilities.size()), values.rows()) {}
+        rows_(static_cast<std::size_t>(factor != nullptr ? factor->rows() : changes.rows())),
+        found_(2 + static_cast<Index>(probabilities.size()), static_cast<Index>(rows_)) {}
 
-  /// @param fingerprint  of what the values depend on
-  /// @returns [rows, probabilities]
-  Eigen::MatrixXd find(const MonteCarloOptions& options, const std::function<std::uint64_t()>& fingerprint) {
-    const auto rows = static_cast<std::size_t>(values_.rows());
+  /// @param fingerprint  of what the quantities depend on
+  void find(const MonteCarloOptions& options, const std::function<std::uint64_t()>& fingerprint) {
     NumberedWork work;
     work.name = "percentiles";
-    work.blocks = (rows + kRows - 1) / kRows;
+    work.blocks = std::max<std::size_t>(1, rows_ / kRows);
     work.threads = options.threads;
     work.for_all = true;
     work.is_kept = false;
@@ -46,39 +46,63 @@ class RowPercentiles {
       require_unpacked(bytes);
     };
     do_work(options.work, work);
-    return found_.transpose();
   }
 
+  Eigen::VectorXd mean() const { return found_.row(0).transpose(); }
+  Eigen::VectorXd deviation() const { return found_.row(1).transpose(); }  ///< standard
+  /// [quantities, probabilities]
+  Eigen::MatrixXd percentiles() const { return found_.bottomRows(found_.rows() - 2).transpose(); }
+
  private:
+  // Whole panels of the product, whose rounded sums are then those of the product of all rows. The last block has the
+  // rest too: a single row would be multiplied in another order.
+  static constexpr std::size_t kRows = 12;
+
   std::size_t count(std::size_t block) const {
-    return std::min(kRows, static_cast<std::size_t>(values_.rows()) - block * kRows);
+    return (block + 1) * kRows + kRows > rows_ ? rows_ - block * kRows : kRows;
   }
 
   std::span<double> of(std::size_t block) {
-    const std::size_t k = probabilities_.size();
-    return {found_.data() + k * block * kRows, k * count(block)};
+    const auto each = static_cast<std::size_t>(found_.rows());
+    return {found_.data() + each * block * kRows, each * count(block)};
   }
 
   void compute(std::size_t block) {
-    std::vector<double> sorted(static_cast<std::size_t>(values_.cols()));
-    for (std::size_t row = block * kRows; row < block * kRows + count(block); ++row) {
-      for (Index i = 0; i < values_.cols(); ++i) {
-        sorted[static_cast<std::size_t>(i)] = values_(static_cast<Index>(row), i);
-      }
+    const auto first = static_cast<Index>(block * kRows), rows = static_cast<Index>(count(block));
+    Eigen::MatrixXd values(rows, changes_.cols());
+    if (factor_ != nullptr) {
+      values.noalias() = factor_->middleRows(first, rows) * changes_;
+    } else {
+      values = changes_.middleRows(first, rows);
+    }
+    const double n = static_cast<double>(values.cols());
+    const Eigen::VectorXd mean = values.rowwise().mean();
+    found_.row(0).segment(first, rows) = mean.transpose();
+    found_.row(1).segment(first, rows) =
+        ((values.colwise() - mean).rowwise().squaredNorm() / (n - 1)).cwiseSqrt().transpose();
+    std::vector<double> sorted(static_cast<std::size_t>(values.cols()));
+    for (Index row = 0; row < rows; ++row) {
+      for (Index i = 0; i < values.cols(); ++i) sorted[static_cast<std::size_t>(i)] = values(row, i);
       std::sort(sorted.begin(), sorted.end());
-      for (std::size_t k = 0; k < probabilities_.size(); ++k) {
-        const double place = std::clamp(probabilities_[k], 0.0, 1.0) * static_cast<double>(sorted.size() - 1);
-        const std::size_t below = std::min(static_cast<std::size_t>(place), sorted.size() - 1);
-        const std::size_t above = std::min(below + 1, sorted.size() - 1);
-        const double part = place - static_cast<double>(below);
-        found_(static_cast<Index>(k), static_cast<Index>(row)) = sorted[below] * (1 - part) + sorted[above] * part;
-      }
+      for (std::size_t k = 0; k < probabilities_.size(); ++k)
+        found_(2 + static_cast<Index>(k), first + row) = percentile(sorted, probabilities_[k]);
     }
   }
 
-  const Eigen::MatrixXd& values_;
+  /// Linear interpolation between order statistics (JCGM 101, 7.7).
+  static double percentile(const std::vector<double>& sorted, double probability) {
+    const double place = std::clamp(probability, 0.0, 1.0) * static_cast<double>(sorted.size() - 1);
+    const std::size_t below = std::min(static_cast<std::size_t>(place), sorted.size() - 1);
+    const std::size_t above = std::min(below + 1, sorted.size() - 1);
+    const double part = place - static_cast<double>(below);
+    return sorted[below] * (1 - part) + sorted[above] * part;
+  }
+
+  const Eigen::MatrixXd& changes_;
+  const Eigen::MatrixXd* factor_;
   const std::vector<double>& probabilities_;
-  Eigen::MatrixXd found_;  // [probabilities, rows]
+  std::size_t rows_;
+  Eigen::MatrixXd found_;  // [mean, deviation, percentiles; quantities]
 };
 
 /// Samples in batches, each of which is fitted by itself.
@@ -225,19 +249,19 @@ MonteCarloResult monte_carlo(const Problem& problem, const Identification& ident
     digest.add(batches.fingerprint());
     return digest;
   };
-  result.percentiles =
-      RowPercentiles(changes, options.probabilities).find(options, [&] { return of_changes().value(); }).colwise() +
-      estimates;
+  QuantityFigures of_estimates(changes, nullptr, options.probabilities);
+  of_estimates.find(options, [&] { return of_changes().value(); });
+  result.percentiles = of_estimates.percentiles().colwise() + estimates;
   if (prediction && prediction->rows() > 0) {
-    const Eigen::MatrixXd quantities = *prediction * changes;
-    result.prediction_mean = quantities.rowwise().mean();
-    result.prediction_uncertainty =
-        ((quantities.colwise() - result.prediction_mean).rowwise().squaredNorm() / (n - 1)).cwiseSqrt();
-    result.prediction_percentiles = RowPercentiles(quantities, options.probabilities).find(options, [&] {
+    QuantityFigures predicted(changes, prediction, options.probabilities);
+    predicted.find(options, [&] {
       Digest digest = of_changes();
       digest.add_numbers({prediction->data(), static_cast<std::size_t>(prediction->size())});
       return digest.value();
     });
+    result.prediction_mean = predicted.mean();
+    result.prediction_uncertainty = predicted.deviation();
+    result.prediction_percentiles = predicted.percentiles();
   }
   result.status = MonteCarloStatus::done;
   return result;

@@ -21,7 +21,8 @@ class PlanSearch {
       : space_(space),
         options_(options),
         by_variance_(options.criterion == PlanningCriterion::variance),
-        design_(space, by_variance_ ? space.functionals(options.functionals) : Eigen::MatrixXd(), options.threads) {
+        design_(space, by_variance_ ? space.functionals(options.functionals) : Eigen::MatrixXd(), options.threads,
+                options.in_step, options.in_step.processes > 1 ? fingerprint_of_choosing(space, options) : 0) {
     rules_.eligible = &options_.eligible;
     if (!options_.group.empty()) rules_.group = &options_.group;
     rules_.repeats = options_.repeats;
@@ -63,15 +64,42 @@ class PlanSearch {
   /// False if the choice determines everything so weakly that nothing can be added to it one by one.
   bool start_from(const std::vector<std::size_t>& chosen) { return design_.rebuild(chosen, 0); }
 
-  ReadingPlan result() const {
+  ReadingPlan chosen() const {
     ReadingPlan plan;
     plan.chosen = design_.chosen();
     std::sort(plan.chosen.begin(), plan.chosen.end());
+    plan.history = {design_.objective()};
+    return plan;
+  }
+
+  void find_value(ReadingPlan& plan) const {
     plan.value = value_of(space_, plan.chosen, by_variance_ ? options_.functionals : Eigen::MatrixXd());
     // The design takes a choice for determined that its rows, factorised, are not.
     plan.status = plan.value.determined ? PlanningStatus::done : PlanningStatus::not_determined;
-    plan.history = {design_.objective()};
-    return plan;
+  }
+
+  /// Each process finds those of some plans.
+  void find_values(std::span<ReadingPlan> plans) const {
+    constexpr std::size_t kNumbers = 5;
+    std::vector<double> found(plans.size() * kNumbers);
+    std::vector<PlanShares::Piece> pieces;
+    const PlanShares& shares = design_.shares();
+    for (std::size_t k = 0; k < plans.size(); ++k) {
+      const std::span<double> numbers(&found[k * kNumbers], kNumbers);
+      pieces.push_back({shares.owner(k), numbers});
+      if (shares.owner(k) != shares.rank()) continue;
+      find_value(plans[k]);
+      const PlanValue& value = plans[k].value;
+      const double given[kNumbers] = {static_cast<double>(value.rank), value.determined ? 1.0 : 0.0,
+                                      value.log_determinant, value.variance, value.cost};
+      std::copy_n(given, kNumbers, numbers.begin());
+    }
+    shares.complete(pieces);
+    for (std::size_t k = 0; k < plans.size(); ++k) {
+      const double* const n = &found[k * kNumbers];
+      plans[k].value = {static_cast<std::size_t>(n[0]), n[1] != 0, n[2], n[3], n[4]};
+      plans[k].status = plans[k].value.determined ? PlanningStatus::done : PlanningStatus::not_determined;
+    }
   }
 
  private:
@@ -201,7 +229,8 @@ class PlanSearch {
     }
     const std::vector<double> history = plan.history;
     const std::size_t exchanges = plan.exchanges, passes = plan.passes;
-    plan = result();
+    plan = chosen();
+    find_value(plan);
     plan.history.insert(plan.history.begin(), history.begin(), history.end());
     plan.exchanges = exchanges;
     plan.passes = passes;
@@ -211,11 +240,8 @@ class PlanSearch {
   void order_by_loss(std::vector<std::size_t>& order) const {
     const std::vector<std::size_t>& chosen = design_.chosen();
     order.resize(chosen.size());
-    std::vector<double> losses(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      order[i] = i;
-      losses[i] = design_.loss(i);
-    }
+    const std::vector<double> losses = design_.losses();
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
     const auto by_candidate = [&](std::size_t a, std::size_t b) {
       return std::tie(chosen[a], a) < std::tie(chosen[b], b);
@@ -305,10 +331,12 @@ std::vector<ReadingPlan> plan_curve(const PlanningSpace& space, const PlanningOp
     if (curve.back().status == PlanningStatus::done && search.start_from(curve.back().chosen)) break;
   }
   if (next >= counts.size()) return curve;
+  const std::size_t grown_from = curve.size();
   for (++next; next < counts.size(); ++next) {
     if (!search.grow(counts[next])) break;
-    curve.push_back(search.result());
+    curve.push_back(search.chosen());
   }
+  search.find_values(std::span(curve).subspan(grown_from));
   return curve;
 }
 

@@ -6,7 +6,6 @@
 
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
-#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/plan/readings/planning_small.h"
 
 namespace abbe {
@@ -21,12 +20,13 @@ using RowsMap = Eigen::Map<const PlanningCandidates::Rows, 0, Eigen::OuterStride
 using ColumnsMap = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 constexpr std::size_t kBlockRows = 192;
 
-// Below this much work in one pass a second thread costs more than it brings.
-constexpr double kWorthThreads = 2e5;
+// Below this much work in one pass a second thread, or another process, costs more than it brings.
+constexpr double kWorthSharing = 2e5;
 
 }  // namespace
 
-PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functionals, int threads)
+PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functionals, int threads,
+                       const WorkInStep& in_step, std::uint64_t fingerprint)
     : space_(space), threads_(threads), by_variance_(functionals.rows() > 0), v_(space.dimension()) {
   const std::size_t n = space.count();
   if (by_variance_) weight_ = functionals.transpose() * functionals;
@@ -55,8 +55,12 @@ PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functi
   x_.resize(block_count());
   ahead_x_.resize(block_count());
   best_.resize(block_count());
-  for (std::vector<double>& x : x_) x.resize(scored * x_stride_);
-  if (static_cast<double>(space.first_row(n)) * static_cast<double>(v_) < kWorthThreads) threads_ = 1;
+  if (static_cast<double>(space.first_row(n)) * static_cast<double>(v_) < kWorthSharing) {
+    threads_ = 1;
+  } else {
+    shares_ = PlanShares(in_step, fingerprint);
+  }
+  for (std::size_t k = 0; k < shares_.own_count(block_count()); ++k) x_[shares_.own(k)].resize(scored * x_stride_);
 }
 
 bool PlanDesign::rebuild(const std::vector<std::size_t>& chosen, double ridge) {
@@ -87,7 +91,7 @@ bool PlanDesign::rebuild(const std::vector<std::size_t>& chosen, double ridge) {
 }
 
 void PlanDesign::refresh_all() {
-  for_each_block(block_count(), threads_, [this](std::size_t block) {
+  for_own_blocks([this](std::size_t block) {
     const std::size_t first = space_.first_row(blocks_[block]);
     const std::size_t rows = space_.first_row(blocks_[block + 1]) - first;
     const RowsMap a(space_.row(first), static_cast<Index>(rows), static_cast<Index>(v_),
@@ -196,7 +200,7 @@ void PlanDesign::change_squares(const Update& update, const double* x, std::size
 }
 
 void PlanDesign::pass() {
-  for_each_block(block_count(), threads_, [this](std::size_t block) {
+  for_own_blocks([this](std::size_t block) {
     const double* x = products(block, pending_.back().end);
     const std::size_t first = space_.first_row(blocks_[block]);
     for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i) {
@@ -265,13 +269,6 @@ void PlanDesign::measure(std::size_t candidate) {
   size_[candidate] = trace;
 }
 
-double PlanDesign::loss(std::size_t place) const {
-  const std::size_t candidate = chosen_[place], n = space_.row_count(candidate);
-  Small lower;
-  if (!factorise(&w_[square_[candidate]], n, -1, lower)) return kImpossible;
-  return by_variance_ ? trace_of_quotient(lower, &g_[square_[candidate]], n) : -log_determinant(lower, n);
-}
-
 bool PlanDesign::allowed(std::size_t candidate, const Allowed& rules) const {
   return (!rules.eligible || rules.eligible->empty() || (*rules.eligible)[candidate] != 0) &&
          (!rules.group || rules.full[(*rules.group)[candidate]] == 0) && times_[candidate] < rules.repeats &&
@@ -283,23 +280,11 @@ void PlanDesign::keep_better(std::size_t candidate, double change, const Allowed
   if (score < best.score - tie() / unit) best = {candidate, change, score, tie() / unit};
 }
 
-PlanDesign::Best PlanDesign::best_of_blocks() const {
-  Best best;
-  for (const Best& one : best_)
-    if (one.score < best.score - one.tie) best = one;
-  return best;
-}
-
 PlanDesign::Best PlanDesign::best_to_add(const Allowed& rules) {
-  struct {
-    PlanDesign& design;
-    const Allowed& rules;
-  } here{*this, rules};
-  for_each_block(block_count(), threads_, [&here](std::size_t block) {
-    PlanDesign& design = here.design;
-    design.best_[block] = {};
-    for (std::size_t i = design.blocks_[block]; i < design.blocks_[block + 1]; ++i)
-      if (design.allowed(i, here.rules)) design.keep_better(i, design.gain(i), here.rules, design.best_[block]);
+  for_own_blocks([this, &rules](std::size_t block) {
+    best_[block] = {};
+    for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i)
+      if (allowed(i, rules)) keep_better(i, gain(i), rules, best_[block]);
   });
   return best_of_blocks();
 }

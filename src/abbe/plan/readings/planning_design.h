@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "abbe/geometry/parallel_blocks.h"
+#include "abbe/plan/readings/planning_shares.h"
 #include "abbe/plan/readings/planning_space.h"
 
 namespace abbe {
@@ -20,6 +22,8 @@ namespace abbe {
 /// changes M^-1 by -T T', T = M^-1 A' L^-T with L L' = I + W; taking out by +T T' with L L' = I - W (Sherman, Morrison
 /// and Woodbury). With X_i = A_i T, Y_i = A_i M^-1 C T and H = T'C T: W_i -= s X X', G_i -= s (X Y' + Y X') - X H X',
 /// s = 1 for adding and -1 for taking out. One pass over the candidates serves several changes.
+/// Several processes keep these of their own blocks of candidates each, and all the same choice and M^-1; every process
+/// makes the same calls, and gets the same answers.
 /// Source: Fedorov, Theory of Optimal Experiments (1972), sections 2.5, 2.9 and 3.2; the forms for several rows follow
 /// by the matrix inversion lemma.
 class PlanDesign {
@@ -28,12 +32,16 @@ class PlanDesign {
   static constexpr double kImpossible = std::numeric_limits<double>::infinity();
 
   /// @param functionals  [m, v]: minimise the sum of their variances; without rows: minimise -log det M
-  PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functionals, int threads);
+  /// @param in_step      processes that make the same choice
+  /// @param fingerprint  of everything that the choice depends on
+  PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functionals, int threads,
+             const WorkInStep& in_step = {}, std::uint64_t fingerprint = 0);
 
   /// The choice, with repetitions, in the order in which it was made.
   const std::vector<std::size_t>& chosen() const { return chosen_; }
   std::size_t times(std::size_t candidate) const { return times_[candidate]; }
   double cost() const { return cost_; }
+  const PlanShares& shares() const { return shares_; }
   /// To be minimised: -log det M, or the sum of variances.
   double objective() const { return objective_; }
   /// Changes of the objective that differ by less are equal: rounding must not choose between readings that are worth
@@ -51,10 +59,10 @@ class PlanDesign {
   bool remove(std::size_t place);
   bool exchange(std::size_t place, std::size_t candidate);
 
-  /// Change of the objective by adding; at most 0.
+  /// Change of the objective by adding; at most 0. Known of candidates of this process's blocks.
   double gain(std::size_t candidate) const;
-  /// Change of the objective by taking out; kImpossible if the rest would not determine everything.
-  double loss(std::size_t place) const;
+  /// [chosen] change of the objective by taking each out; kImpossible if the rest would not determine everything.
+  std::vector<double> losses() const;
 
   struct Best {
     std::size_t candidate = static_cast<std::size_t>(-1);
@@ -100,6 +108,18 @@ class PlanDesign {
     std::array<double, kMostRows * kMostRows> middle{};  // H, [rows, rows]
   };
 
+  /// W_j and G_j of a chosen reading.
+  struct Squares {
+    std::array<double, kMostRows * kMostRows> w, g;
+  };
+
+  /// Runs work(block) for all own blocks of candidates.
+  template <typename Work>
+  void for_own_blocks(const Work& work);
+  /// Of readings whose candidates may be those of other processes.
+  void bring_squares(std::span<const std::size_t> places, std::span<Squares> squares) const;
+  std::size_t owner_of(std::size_t candidate) const;
+  double loss_of(const double* w, const double* g, std::size_t n) const;
   bool make_update(std::size_t candidate, double sign);
   void commit(double direction);
   void pass();
@@ -124,6 +144,7 @@ class PlanDesign {
 
   const PlanningSpace& space_;
   int threads_;
+  PlanShares shares_;
   bool by_variance_;
   std::size_t v_;
   Eigen::MatrixXd weight_;   // C, [v, v]
@@ -139,10 +160,11 @@ class PlanDesign {
   std::vector<double> size_;  // [candidates] trace of W_i
   struct Ahead {
     std::size_t place, first;  // first column of its products
+    Squares squares;
   };
   static constexpr std::size_t kNotAhead = static_cast<std::size_t>(-1);
   std::vector<Ahead> ahead_;
-  std::size_t ahead_at_ = kNotAhead;
+  std::size_t ahead_at_ = kNotAhead;          // first column of its products
   std::vector<double> ahead_factors_;         // M^-1 A_j', columns, each [stride]
   std::vector<std::vector<double>> ahead_x_;  // A_i times these, per block
   struct Leaving {
@@ -151,6 +173,7 @@ class PlanDesign {
     double size = 0;     // lambda_j / (1 - lambda_j)
     std::size_t rows = 0;
     bool bounded = false;
+    Squares squares;
   } leaving_;                           // of the chosen reading that is to be exchanged
   std::vector<double> factors_;         // columns, each [stride]
   std::vector<Update> pending_;         // at most two
@@ -158,5 +181,10 @@ class PlanDesign {
   std::size_t x_stride_ = 0;
   std::vector<Best> best_;  // per block
 };
+
+template <typename Work>
+void PlanDesign::for_own_blocks(const Work& work) {
+  for_each_block(shares_.own_count(block_count()), threads_, [this, &work](std::size_t k) { work(shares_.own(k)); });
+}
 
 }  // namespace abbe

@@ -3,7 +3,6 @@
 
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
-#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/plan/readings/planning_design.h"
 #include "abbe/plan/readings/planning_small.h"
 
@@ -22,33 +21,30 @@ constexpr double kSafelyBelowOne = 1 - 1e-6;
 
 }  // namespace
 
-void PlanDesign::look_ahead(std::span<const std::size_t> places) {
+void PlanDesign::look_ahead(std::span<const std::size_t> all) {
   ahead_.clear();
+  const std::span<const std::size_t> places = all.first(std::min(all.size(), kMostAhead));
+  std::array<Squares, kMostAhead> squares;
+  bring_squares(places, squares);
   const Index v = static_cast<Index>(v_);
   const Eigen::OuterStride<> stride(static_cast<Index>(space_.stride()));
   std::size_t columns = 0;
-  for (const std::size_t place : places.first(std::min(places.size(), kMostAhead))) {
+  for (const std::size_t place : places) {
     const std::size_t candidate = chosen_[place], n = space_.row_count(candidate);
     const RowsMap a(space_.row(space_.first_row(candidate)), static_cast<Index>(n), v, stride);
     ColumnsMap solved(&ahead_factors_[columns * space_.stride()], v, static_cast<Index>(n), stride);
     solved.noalias() = inverse_ * a.transpose();
-    ahead_.push_back({place, columns});
+    ahead_.push_back({place, columns, squares[ahead_.size()]});
     columns += n;
   }
   columns = padded(columns, kColumnMultiple);
-  struct {
-    PlanDesign& design;
-    std::size_t columns;
-  } here{*this, columns};
-  for_each_block(block_count(), threads_, [&here](std::size_t block) {
-    PlanDesign& design = here.design;
-    const PlanningSpace& space = design.space_;
-    std::vector<double>& x = design.ahead_x_[block];
-    x.assign(here.columns * design.x_stride_, 0.0);
-    const std::size_t first = space.first_row(design.blocks_[block]);
-    const std::size_t rows = padded(space.first_row(design.blocks_[block + 1]) - first, kColumnMultiple);
-    add_cross_products(space.row(first), rows, space.stride(), design.ahead_factors_.data(), here.columns,
-                       space.stride(), space.stride(), x.data(), design.x_stride_);
+  for_own_blocks([this, columns](std::size_t block) {
+    std::vector<double>& x = ahead_x_[block];
+    x.assign(columns * x_stride_, 0.0);
+    const std::size_t first = space_.first_row(blocks_[block]);
+    const std::size_t rows = padded(space_.first_row(blocks_[block + 1]) - first, kColumnMultiple);
+    add_cross_products(space_.row(first), rows, space_.stride(), ahead_factors_.data(), columns, space_.stride(),
+                       space_.stride(), x.data(), x_stride_);
   });
 }
 
@@ -71,25 +67,23 @@ PlanDesign::Best PlanDesign::best_instead(std::size_t place, const Allowed& rule
     behind.noalias() = inverse_ * weighted;
     end *= 2;
   }
-  const Eigen::Map<const Eigen::MatrixXd> w(&w_[square_[before]], n, n);
+  ahead_at_ = kNotAhead;
+  for (const Ahead& one : ahead_) {
+    if (one.place != place) continue;
+    ahead_at_ = one.first;
+    leaving_.squares = one.squares;
+  }
+  if (ahead_at_ == kNotAhead) bring_squares({&place, 1}, {&leaving_.squares, 1});
+  const Eigen::Map<const Eigen::MatrixXd> w(leaving_.squares.w.data(), n, n);
   const double largest = SymmetricEigen<>(w, Eigen::EigenvaluesOnly).eigenvalues()[n - 1];
-  leaving_.loss = loss(place);
+  leaving_.loss = loss_of(leaving_.squares.w.data(), leaving_.squares.g.data(), static_cast<std::size_t>(n));
   leaving_.bounded = leaving_.loss < kImpossible && largest < kSafelyBelowOne && !rules.per_cost;
   leaving_.root_loss = std::sqrt(std::max(leaving_.loss, 0.0));
   leaving_.stretch = leaving_.bounded ? 1 / (1 - largest) : 0;
   // Before any products: |W_ij|^2 <= lambda_j trace W_i.
   leaving_.size = std::max(largest, 0.0) * leaving_.stretch;
   leaving_.rows = static_cast<std::size_t>(n);
-  ahead_at_ = kNotAhead;
-  for (const Ahead& one : ahead_)
-    if (one.place == place) ahead_at_ = one.first;
-  struct {
-    PlanDesign& design;
-    const Allowed& rules;
-    std::size_t before, end;
-  } here{*this, rules, before, end};
-  for_each_block(block_count(), threads_,
-                 [&here](std::size_t block) { here.design.best_in_block(block, here.before, here.end, here.rules); });
+  for_own_blocks([&](std::size_t block) { best_in_block(block, before, end, rules); });
   return best_of_blocks();
 }
 
@@ -167,7 +161,7 @@ double PlanDesign::change_by_exchange(std::size_t before, std::size_t candidate,
   };
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      wj[i * m + j] = w_[square_[before] + i * m + j] - product(x, i, k.data(), j, x_stride_);
+      wj[i * m + j] = leaving_.squares.w[i * m + j] - product(x, i, k.data(), j, x_stride_);
       wj[j * m + i] = wj[i * m + j];
     }
   Small lower_j;
@@ -185,7 +179,7 @@ double PlanDesign::change_by_exchange(std::size_t before, std::size_t candidate,
     }
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      gj[i * m + j] = g_[square_[before] + i * m + j] - product(mixed, i, k.data(), j, x_stride_) -
+      gj[i * m + j] = leaving_.squares.g[i * m + j] - product(mixed, i, k.data(), j, x_stride_) -
                       product(mixed, j, k.data(), i, x_stride_) + product(gk.data(), i, k.data(), j, n);
       gj[j * m + i] = gj[i * m + j];
     }

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "abbe/geometry/column_norms.h"
+#include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/digest.h"
+#include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/singular_values.h"
 
 namespace abbe {
@@ -64,6 +68,43 @@ void validate(const PlanningCandidates& candidates, const Eigen::MatrixXd& known
   if (!candidates.rows.allFinite() || !known.allFinite()) fail("planning: a derivative is not finite");
 }
 
+using SeenRows = Eigen::Map<PlanningCandidates::Rows, 0, Eigen::OuterStride<>>;
+
+/// The product of all rows, of which each process computes some. These begin at multiples of four rows, which the
+/// product takes together, so that the sums are rounded as if one process had computed all.
+void multiply_rows(const PlanningCandidates::Rows& rows, const Eigen::MatrixXd& factor, const WorkInStep& in_step,
+                   SeenRows product) {
+  constexpr Index kTogether = 4, kFew = 64, kMostRows = Index{1} << 16;
+  constexpr double kWorthSharing = 1e7;  // sums of products
+  const auto processes = static_cast<Index>(in_step.processes);
+  if (processes == 1 || static_cast<double>(product.size()) * static_cast<double>(rows.cols()) < kWorthSharing) {
+    product.noalias() = rows * factor;
+    return;
+  }
+  Digest digest;
+  digest.add_text(vector_instructions());
+  digest.add(static_cast<std::uint64_t>(rows.rows()));
+  digest.add_numbers({factor.data(), static_cast<std::size_t>(factor.size())});
+  const Index each = std::min(kMostRows, (rows.rows() / processes / kTogether + 1) * kTogether);
+  PlanningCandidates::Rows own;
+  for (Index start = 0; start < rows.rows(); start += processes * each) {
+    const auto first = [&](Index process) { return std::min(rows.rows(), start + process * each); };
+    const auto rank = static_cast<Index>(in_step.rank);
+    // Few rows would be multiplied in another way: those before them are computed too.
+    const Index before = first(rank + 1) - first(rank) < kFew ? std::min(first(rank), kFew) : 0;
+    own.noalias() = rows.middleRows(first(rank) - before, first(rank + 1) - first(rank) + before) * factor;
+    const auto left_out = static_cast<std::size_t>(before * own.cols());
+    const std::span<const double> numbers(own.data() + left_out, static_cast<std::size_t>(own.size()) - left_out);
+    const std::vector<std::vector<std::byte>> all = in_step.gather(digest.value(), std::as_bytes(numbers));
+    for (Index process = 0; process < processes; ++process) {
+      std::span<const std::byte> bytes = all[static_cast<std::size_t>(process)];
+      for (Index row = first(process); row < first(process + 1); ++row)
+        unpack_numbers(bytes, {&product(row, 0), static_cast<std::size_t>(product.cols())});
+      require_unpacked(bytes);
+    }
+  }
+}
+
 void add_known(const PlanningSpace& space, StreamingFactor& stream) {
   for (Index k = 0; k < space.known_rows().rows(); ++k) {
     stream.next() = space.known_rows().row(k);
@@ -103,7 +144,8 @@ PlanValue value_of(const PlanningSpace& space, const RightSingular& svd, const E
 
 }  // namespace
 
-PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::MatrixXd& known, double threshold)
+PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::MatrixXd& known,
+                             const WorkInStep& in_step, double threshold)
     : first_row_(candidates.first_row), cost_s_(candidates.cost_s) {
   validate(candidates, known);
   const Index p = candidates.rows.cols(), all = candidates.rows.rows();
@@ -137,10 +179,8 @@ PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::
   // Padded as cross_products.h wants it: length to 8, rows to 4.
   stride_ = (static_cast<std::size_t>(v) + 7) / 8 * 8;
   rows_.assign((static_cast<std::size_t>(all) + 4) * stride_, 0.0);
-  using RowMajor = PlanningCandidates::Rows;
-  Eigen::Map<RowMajor, 0, Eigen::OuterStride<>> seen(rows_.data(), all, v,
-                                                     Eigen::OuterStride<>(static_cast<Index>(stride_)));
-  seen.noalias() = candidates.rows * estimates_from_seen_;
+  multiply_rows(candidates.rows, estimates_from_seen_, in_step,
+                {rows_.data(), all, v, Eigen::OuterStride<>(static_cast<Index>(stride_))});
 }
 
 Eigen::MatrixXd PlanningSpace::functionals(const Eigen::MatrixXd& rows) const { return rows * estimates_from_seen_; }

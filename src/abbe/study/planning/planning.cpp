@@ -47,12 +47,21 @@ double root_mean_square(const PlanValue& value, const Eigen::MatrixXd& predictio
 }
 
 /// As many candidates as the plan has, without any choice.
-void try_at_random(const PlanningSpace& space, const Eigen::MatrixXd& predictions, std::uint64_t seed,
-                   const std::stop_token& stop, StudyPlan& result) {
-  std::vector<double> found;
-  for (std::size_t draw = 0; draw < kRandomDraws; ++draw) {
-    stop_if_asked(stop);
-    RandomStream random(seed + 2, draw);
+void try_at_random(const PlanningSpace& space, const Eigen::MatrixXd& predictions, const Study& study,
+                   const JobOptions& job, StudyPlan& result) {
+  NumberedItems items{.name = "choices at random", .count = kRandomDraws, .threads = study.threads};
+  items.fingerprint = [&] {
+    Digest digest;
+    digest.add_text(vector_instructions());
+    digest.add(study.seed);
+    digest.add(result.readings.size());
+    for (const Eigen::MatrixXd* matrix : {&space.estimates_from_seen(), &predictions})
+      digest.add_numbers({matrix->data(), static_cast<std::size_t>(matrix->size())});
+    return digest.value();
+  };
+  items.compute = [&](std::size_t draw) -> ItemResult {
+    stop_if_asked(job.stop);
+    RandomStream random(study.seed + 2, draw);
     std::vector<std::size_t> order(space.count());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     for (std::size_t k = 0; k < result.readings.size(); ++k) {
@@ -61,8 +70,12 @@ void try_at_random(const PlanningSpace& space, const Eigen::MatrixXd& prediction
     }
     order.resize(result.readings.size());
     const PlanValue value = value_of(space, order, predictions);
-    if (value.determined) found.push_back(root_mean_square(value, predictions));
-  }
+    if (!value.determined) return {};
+    return {{root_mean_square(value, predictions)}};
+  };
+  std::vector<double> found;
+  for (const ItemResult& draw : results_of_items(job.work, items))
+    found.insert(found.end(), draw.numbers.begin(), draw.numbers.end());
   result.random_tried = kRandomDraws;
   if (found.size() < (kRandomDraws + 1) / 2) return;
   std::sort(found.begin(), found.end());
@@ -128,7 +141,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
   result.hidden = candidates.hidden;
   result.forbidden = candidates.forbidden;
   add_reading_costs(study, candidates);
-  auto space = std::make_unique<const PlanningSpace>(candidates.rows, model.known());
+  auto space = std::make_unique<const PlanningSpace>(candidates.rows, model.known(), job.in_step);
   result.parameters = space->parameter_count();
   result.seen = space->dimension();
   const Eigen::VectorXd unseen = space->unseen_part(predictions);
@@ -139,6 +152,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
 
   PlanningOptions options;
   options.threads = study.threads;
+  options.in_step = job.in_step;
   options.seed = study.seed;
   if (plan.goal != PlanningGoal::determinant) {
     options.criterion = PlanningCriterion::variance;
@@ -193,6 +207,10 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
         rows.row(next++) = candidates.rows.rows.row(static_cast<Eigen::Index>(k));
     return rows;
   };
+  // Of predictions; what is minimised is known.
+  const auto predicted = [&](const ReadingPlan& chosen) {
+    return plan.goal == PlanningGoal::volumetric ? chosen.value : value_of(*space, chosen.chosen, predictions);
+  };
   const bool drifting = has_drift(study);
   if (depth == PlanningDepth::choice) {
     const PlanningCandidates::Rows rows =
@@ -200,7 +218,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
     result.with_prior = uncertainty_with_prior(model, rows, predictions);
     return result;
   }
-  if (!drifting) try_at_random(*space, predictions, study.seed, stop, result);
+  if (!drifting) try_at_random(*space, predictions, study, job, result);
 
   const bool stands_anywhere = may_stand_anywhere(model);
   options.progress = [&stop](double) { stop_if_asked(stop); };
@@ -213,7 +231,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
     }
     PlanningModel::Candidates around = model.readings_at(tried);
     add_reading_costs(study, around);
-    auto space_around = std::make_unique<const PlanningSpace>(around.rows, model.known());
+    auto space_around = std::make_unique<const PlanningSpace>(around.rows, model.known(), job.in_step);
     if (space_around->dimension() != space->dimension()) break;
     std::map<CandidateReading, std::size_t> places;
     for (std::size_t i = 0; i < around.readings.size(); ++i) places[around.readings[i]] = i;
@@ -239,7 +257,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
     timed = choose_in_time(setting, *space, options, result, stop);
     if (result.plan.status != PlanningStatus::done) return result;
   } else {
-    result.uncertainty = root_mean_square(value_of(*space, result.plan.chosen, predictions), predictions);
+    result.uncertainty = root_mean_square(predicted(result.plan), predictions);
     result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
   }
 
@@ -265,8 +283,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
   for (std::size_t k = 0; k < curve.size(); ++k) {
     PlanPoint point{counts[k], curve[k].status == PlanningStatus::done, 0, 0};
     if (point.determined) point.with_prior = uncertainty_with_prior(model, rows_of(curve[k].chosen), predictions);
-    if (point.determined)
-      point.uncertainty = root_mean_square(value_of(*space, curve[k].chosen, predictions), predictions);
+    if (point.determined) point.uncertainty = root_mean_square(predicted(curve[k]), predictions);
     result.curve.push_back(point);
   }
   say_what_is_enough(plan, result);
@@ -372,13 +389,13 @@ bool names_states(const Study& study) {
 }
 
 /// At which conditions the readings are to be taken; where errors have states, by trying.
-std::vector<ConditionsOfANumber> conditions_to_take(const Study& study, const std::stop_token& stop) {
+std::vector<ConditionsOfANumber> conditions_to_take(const Study& study, const JobOptions& job) {
   const std::size_t count = PlanningModel(study).states().conditions().size();
   std::vector<std::size_t> all(count);
   for (std::size_t c = 0; c < count; ++c) all[c] = c;
   const auto poses = static_cast<std::size_t>(study.planning->candidates);
   const PlanningSetting setting = planning_setting(study, all, std::min(poses, kPosesToCompare));
-  return choose_conditions({*setting.model, setting.candidates, setting.predictions}, stop);
+  return choose_conditions({*setting.model, setting.candidates, setting.predictions}, job);
 }
 
 }  // namespace
@@ -398,7 +415,7 @@ StudyPlan plan_study(const Study& study, const JobOptions& options) {
   conditions.conditions = {0};
   if (names_states(study)) {
     progress(0);
-    curve = conditions_to_take(study, options.stop);
+    curve = conditions_to_take(study, options);
     for (const ConditionsOfANumber& one : curve) {
       if (one.chosen || &one == &curve.back()) conditions = one;
       if (one.chosen) break;

@@ -123,10 +123,12 @@ void find_open(const ConditionsToJudge& judged, const PlanningSpace& space, Cond
 
 /// What readings at these conditions are worth, chosen as a plan chooses them. More than kMostJudged are as many times
 /// a choice of these: candidates are fewer than those of the plan itself.
-void judge_choice(const ConditionsToJudge& judged, const PlanningSpace& with_prior, ConditionsOfANumber& one) {
+void judge_choice(const ConditionsToJudge& judged, const PlanningSpace& with_prior, const WorkInStep& in_step,
+                  ConditionsOfANumber& one) {
   const PlanningStudy& plan = *judged.model.study().planning;
   PlanningOptions options;
   options.threads = judged.model.study().threads;
+  options.in_step = in_step;
   options.most_passes = 1;
   options.count = std::min(one.readings, kMostJudged);
   options.repeats = options.count;
@@ -213,7 +215,7 @@ std::size_t readings_within(const PlanningModel& model, const std::vector<std::s
   return std::min(most, all);
 }
 
-std::vector<ConditionsOfANumber> choose_conditions(const ConditionsToJudge& judged, const std::stop_token& stop) {
+std::vector<ConditionsOfANumber> choose_conditions(const ConditionsToJudge& judged, const JobOptions& job) {
   const PlanningModel& model = judged.model;
   const std::vector<PlanningCondition>& all = model.states().conditions();
   const auto count = static_cast<std::size_t>(
@@ -230,14 +232,14 @@ std::vector<ConditionsOfANumber> choose_conditions(const ConditionsToJudge& judg
   std::vector<ConditionsOfANumber> curve;
   std::vector<std::size_t> chosen;
   while (curve.size() < most) {
-    chosen = one_more(mean, chosen, count, stop);
+    chosen = one_more(mean, chosen, count, job.stop);
     ConditionsOfANumber one;
     one.conditions = chosen;
     std::sort(one.conditions.begin(), one.conditions.end());
     one.readings = readings_within(model, one.conditions);
     if (one.readings > 0) {
       find_open(judged, space, one);
-      judge_choice(judged, with_prior, one);
+      judge_choice(judged, with_prior, job.in_step, one);
     }
     curve.push_back(std::move(one));
   }

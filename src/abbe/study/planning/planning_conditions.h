@@ -3,7 +3,6 @@
 // For plans of readings of errors with states: at which conditions, and what that is worth over the states.
 #include <Eigen/Core>
 #include <cstddef>
-#include <stop_token>
 #include <vector>
 
 #include "abbe/study/planning/planning.h"
@@ -26,7 +25,7 @@ std::size_t readings_within(const PlanningModel& model, const std::vector<std::s
 
 /// The best conditions of every number, from one on, and which of them the plan takes: the smallest number that leaves
 /// no more open than all conditions do and is within 2 % of the best.
-std::vector<ConditionsOfANumber> choose_conditions(const ConditionsToJudge& judged, const std::stop_token& stop);
+std::vector<ConditionsOfANumber> choose_conditions(const ConditionsToJudge& judged, const JobOptions& job);
 
 /// Groups by conditions: in a course no more readings than there is time for.
 struct ConditionGroups {

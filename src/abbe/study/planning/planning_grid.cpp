@@ -278,8 +278,7 @@ class GridSearch {
       std::vector<Counts> found;
       collect(all_axes(), 0.9 * poses, 1.3 * poses, {}, found);
       // As many positions everywhere as the axes need first: what is short on one axis leaves it open.
-      std::stable_sort(found.begin(), found.end(),
-                       [this](const Counts& a, const Counts& b) { return short_of(a) < short_of(b); });
+      sort_by_missing(found);
       if (found.size() > kMostGrids) found.resize(kMostGrids);
       for (const Counts& counts : found) {
         Grid grid{"all axes together, " + counts_text(counts), grid_of(counts), {}};
@@ -311,6 +310,17 @@ class GridSearch {
     return missing;
   }
 
+  /// Those first of which the fewest positions are missing.
+  void sort_by_missing(std::vector<Counts>& list) const {
+    std::vector<std::pair<std::size_t, Counts>> sorted;
+    for (Counts& counts : list) {
+      const std::size_t missing = short_of(counts);
+      sorted.emplace_back(missing, std::move(counts));
+    }
+    std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t k = 0; k < list.size(); ++k) list[k] = std::move(sorted[k].second);
+  }
+
   /// Several set-ups of the machine: the linear axes over their volume at one or two positions of the rotary axes, and
   /// the rotary axes together at one or two positions of the linear ones (Aguado et al., fig. 5, B with C).
   void add_composite(std::size_t number, std::vector<Grid>& grids) const {
@@ -325,9 +335,8 @@ class GridSearch {
         const double first = share * poses / static_cast<double>(times), second = (1 - share) * poses;
         collect(linear, 0.8 * first, 1.25 * first, {}, volumes);
         collect(turning, 0.8 * second, 1.25 * second, {}, turns);
-        const auto fewest_missing = [this](const Counts& a, const Counts& b) { return short_of(a) < short_of(b); };
-        std::stable_sort(volumes.begin(), volumes.end(), fewest_missing);
-        std::stable_sort(turns.begin(), turns.end(), fewest_missing);
+        sort_by_missing(volumes);
+        sort_by_missing(turns);
         if (volumes.size() > 4) volumes.resize(4);
         if (turns.size() > 4) turns.resize(4);
         for (const Counts& volume : volumes)

@@ -1,0 +1,51 @@
+#pragma once
+
+// Internal to plan: blocks of candidates, shared out among processes that choose in step.
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "abbe/geometry/work_in_step.h"
+
+namespace abbe {
+
+class PlanningSpace;
+struct PlanningOptions;
+
+/// Of everything that a choice depends on. All rows of the candidates have a part in the seen directions.
+std::uint64_t fingerprint_of_choosing(const PlanningSpace& space, const PlanningOptions& options);
+
+/// Every process keeps every so many of the blocks, so that neighbours, which are alike, do not burden one of them.
+class PlanShares {
+ public:
+  PlanShares() = default;  ///< one process
+  PlanShares(const WorkInStep& in_step, std::uint64_t fingerprint);
+
+  bool any() const { return in_step_.processes > 1; }
+  std::size_t owner(std::size_t block) const { return block % in_step_.processes; }
+  std::size_t rank() const { return in_step_.rank; }
+  /// How many of the blocks are own ones, and the k-th of these.
+  std::size_t own_count(std::size_t blocks) const {
+    return (blocks + in_step_.processes - 1 - in_step_.rank) / in_step_.processes;
+  }
+  std::size_t own(std::size_t k) const { return in_step_.rank + k * in_step_.processes; }
+
+  /// What all processes give, in their order.
+  std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) const;
+
+  /// Numbers that one process has, its owner.
+  struct Piece {
+    std::size_t owner;
+    std::span<double> numbers;
+  };
+  /// Gives every process the numbers of all pieces.
+  void complete(std::span<const Piece> pieces) const;
+
+ private:
+  WorkInStep in_step_{};
+  std::uint64_t fingerprint_ = 0;
+};
+
+}  // namespace abbe
