@@ -142,12 +142,22 @@ inline HWY_NOINLINE ErrorRotation with_large_angles(const Vector3& angles, const
   e.c = choose(large, sine_cosine(angles.z), e.c);
   return e;
 }
-HWY_INLINE ErrorRotation error_rotation(const Vector3& angles) {
+/// Whether any pose of the vector needs the full range.
+HWY_INLINE bool has_large_angles(const Vector3& angles) {
   const Vector3 z = {hn::Mul(angles.x, angles.x), hn::Mul(angles.y, angles.y), hn::Mul(angles.z, angles.z)};
-  const ErrorRotation e{short_sine_cosine(angles.x, z.x), short_sine_cosine(angles.y, z.y),
-                        short_sine_cosine(angles.z, z.z)};
-  const auto large = hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16));
-  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), large))) return with_large_angles(angles, z, e);
+  return !hn::AllFalse(Tag(), hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16)));
+}
+/// Where no angle is large.
+HWY_INLINE ErrorRotation short_error_rotation(const Vector3& angles) {
+  const Vector3 z = {hn::Mul(angles.x, angles.x), hn::Mul(angles.y, angles.y), hn::Mul(angles.z, angles.z)};
+  return {short_sine_cosine(angles.x, z.x), short_sine_cosine(angles.y, z.y), short_sine_cosine(angles.z, z.z)};
+}
+HWY_INLINE ErrorRotation error_rotation(const Vector3& angles) {
+  const ErrorRotation e = short_error_rotation(angles);
+  if (HWY_UNLIKELY(has_large_angles(angles))) {
+    const Vector3 z = {hn::Mul(angles.x, angles.x), hn::Mul(angles.y, angles.y), hn::Mul(angles.z, angles.z)};
+    return with_large_angles(angles, z, e);
+  }
   return e;
 }
 /// (I + skew(e))^-1 r, for the first-order composition of published models.

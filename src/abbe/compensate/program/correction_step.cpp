@@ -41,7 +41,14 @@ void CorrectionStep::choose_axes(const std::vector<HeldAxis>& kept) {
   is_inverted_ = working.is_inverted;
   orientation_rows_ = working.orientation_rows;
   usual_ = orientation_rows_ == 2 && turning_.size() == 2 && reaching_.size() == 3;
-  for (const std::size_t axis : reaching_) usual_ = usual_ && machine_.axes[axis].kind == AxisKind::linear;
+  straight_ = usual_ || (orientation_rows_ == 0 && turning_.empty() && reaching_.size() == 3 && arm_.empty() &&
+                         options_.target != TargetKind::full_pose);
+  for (const std::size_t axis : reaching_) {
+    const bool linear = machine_.axes[axis].kind == AxisKind::linear;
+    usual_ = usual_ && linear;
+    straight_ = straight_ && linear;
+  }
+  straight_ = straight_ && machine_.couplings.empty();
 }
 
 /// Rotation vector that turns the tool to where it is wanted: about its length the shortest, for a direction.
@@ -49,7 +56,7 @@ Eigen::Vector3d CorrectionStep::orientation_error(const CorrectionBlock& block, 
   if (options_.target == TargetKind::full_pose) {
     return rotation_vector(matrix_at(block.goal_rotation, k) * matrix_at(block.rotation, k).transpose());
   }
-  const Eigen::Vector3d direction = matrix_at(block.rotation, k) * machine_.tool_direction;
+  const Eigen::Vector3d direction = vector_at(block.direction, k);
   const Eigen::Vector3d goal = vector_at(block.goal_direction, k);
   const Eigen::Vector3d axis = direction.cross(goal);
   const double square = axis.squaredNorm(), cosine = direction.dot(goal);
