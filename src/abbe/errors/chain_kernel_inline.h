@@ -358,10 +358,22 @@ HWY_INLINE SineCosine fourier_argument(double scale, bool shares_turn, const Axi
   return sine_cosine(hn::Mul(load(lanes.position.v + k), set(scale)));
 }
 
+constexpr std::size_t kHarmonics = 4;  // computed at once
+
+/// Their number is known, as that of the coefficients of horner().
+template <std::size_t kVectors, std::size_t kNumber>
+HWY_INLINE void add_harmonics(const double* pairs, const SineCosine (&harmonic)[kHarmonics][kVectors], Vector* value) {
+  for (std::size_t h = 0; h < kNumber; ++h) {
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      value[i] = hn::MulAdd(set(pairs[2 * h]), harmonic[h][i].cosine, value[i]);
+      value[i] = hn::MulAdd(set(pairs[2 * h + 1]), harmonic[h][i].sine, value[i]);
+    }
+  }
+}
+
 template <std::size_t kVectors>
 inline HWY_NOINLINE void evaluate_fourier(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
                                           std::size_t k, unsigned written, Lane* out) {
-  constexpr std::size_t kHarmonics = 4;
   std::size_t most = 0;
   for (const Series& series : group.series) most = std::max(most, series.size);
   SineCosine one[kVectors], harmonic[kHarmonics][kVectors], last[kVectors];
@@ -380,12 +392,22 @@ inline HWY_NOINLINE void evaluate_fourier(const FunctionGroup& group, const doub
       Vector value[kVectors];
       for (std::size_t i = 0; i < kVectors; ++i) value[i] = first == 0 ? set(c[0]) : hn::Zero(Tag());
       const std::size_t end = series.size > first ? std::min(series.size - first, kHarmonics) : 0;
-      for (std::size_t h = 0; h < end; ++h) {
-        const double* pair = c + 2 * (first + h) + 1;
-        for (std::size_t i = 0; i < kVectors; ++i) {
-          value[i] = hn::MulAdd(set(pair[0]), harmonic[h][i].cosine, value[i]);
-          value[i] = hn::MulAdd(set(pair[1]), harmonic[h][i].sine, value[i]);
-        }
+      const double* pairs = c + 2 * first + 1;
+      switch (end) {
+        case 0:
+          break;
+        case 1:
+          add_harmonics<kVectors, 1>(pairs, harmonic, value);
+          break;
+        case 2:
+          add_harmonics<kVectors, 2>(pairs, harmonic, value);
+          break;
+        case 3:
+          add_harmonics<kVectors, 3>(pairs, harmonic, value);
+          break;
+        default:
+          add_harmonics<kVectors, kHarmonics>(pairs, harmonic, value);
+          break;
       }
       add_to<kVectors>(out[series.component].v + k, (written >> series.component & 1) != 0, value);
       written |= 1u << series.component;

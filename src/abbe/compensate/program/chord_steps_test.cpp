@@ -117,11 +117,15 @@ TEST(ChordSteps, WhereTheyDoNotServeTheActualDerivativeDoes) {
   const Machine machine = test::trunnion_mill();
   ErrorSet errors = test::tens_of_micrometres(machine, 11);
   for (ErrorMotion& motion : errors.motions) {
-    for (double& coefficient : motion.coefficients) coefficient *= 100;
+    for (double& coefficient : motion.coefficients) coefficient *= 50;
   }
   CorrectionOptions options;
   options.largest_turn = 0.5;
+  options.largest_shift = 200;
   CorrectedBlock poses = tilted_poses(machine, 300);
+  for (std::vector<double>& axis : poses.commands) {
+    for (double& command : axis) command *= 0.8;  // room for corrections of millimetres
+  }
   poses.correct(CompensatedInverse(machine, errors, options), 0, 300);
   int reached = 0;
   for (std::size_t k = 0; k < 300; ++k) {
