@@ -20,9 +20,8 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kBlock = kCorrectionBlock;
-constexpr int kRefresh = 6;               // iterations after which the derivative is taken anew
-constexpr int kChordSteps = 6;            // with the derivative of the nominal machine, before the actual one is taken
-constexpr std::size_t kWidestVector = 8;  // numbers
+constexpr int kRefresh = 6;     // iterations after which the derivative is taken anew
+constexpr int kChordSteps = 6;  // with the derivative of the nominal machine, before the actual one is taken
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 using Block = CorrectionBlock;
@@ -310,7 +309,7 @@ struct CompensatedInverse::Implementation {
     }
     if (chords) take_chords(block);
     if (!any_active(block)) return;
-    find_across(block);
+    stepper->find_across(block);
     std::array<std::uint8_t, kBlock> kept{}, moved{};
     iterate(block);
     give_up(block, kept, moved);
@@ -368,51 +367,6 @@ struct CompensatedInverse::Implementation {
         block.command[i][k] = value;
         block.position[i][k] = std::isfinite(value) ? value : 0;
         if (!std::isfinite(value)) CorrectionStep::finish(block, k, CorrectionStatus::not_finite);
-      }
-    }
-  }
-
-  /// Vectors are read as a whole: numbers where there is no pose.
-  static void fill_up(Block& block) {
-    for (std::size_t k = block.count; k < std::min(kBlock, block.count + kWidestVector); ++k) {
-      for (Lanes& lanes : block.position) lanes[k] = 0;
-      for (auto* three : {&block.point, &block.goal_point, &block.direction, &block.goal_direction}) {
-        for (Lanes& lanes : *three) lanes[k] = 0;
-      }
-      block.position_residual[k] = block.orientation_residual[k] = 0;
-    }
-  }
-
-  /// Ends poses whose goals are no numbers.
-  void check_goals(Block& block) const {
-    // A difference of a number to itself is zero, of anything else it is no number.
-    Lanes none{};
-    const auto note = [&](const Lanes& lanes) {
-      for (std::size_t k = 0; k < block.count; ++k) none[k] += lanes[k] - lanes[k];
-    };
-    for (const Lanes& lanes : block.goal_point) note(lanes);
-    if (options.target == TargetKind::full_pose) {
-      for (const Lanes& lanes : block.goal_rotation) note(lanes);
-    } else {
-      for (const Lanes& lanes : block.goal_direction) note(lanes);
-    }
-    for (std::size_t k = 0; k < block.count; ++k) {
-      if (none[k] != 0 || std::isnan(none[k])) CorrectionStep::finish(block, k, CorrectionStatus::not_finite);
-    }
-  }
-
-  /// Two directions at right angles to the wanted one.
-  void find_across(Block& block) const {
-    for (std::size_t k = 0; k < block.count; ++k) {
-      Eigen::Vector3d direction = vector_at(block.goal_direction, k);
-      if (options.target == TargetKind::full_pose)
-        direction = matrix_at(block.goal_rotation, k) * machine.tool_direction;
-      if (!direction.allFinite()) direction = Eigen::Vector3d::UnitZ();
-      const Eigen::Vector3d first = direction.unitOrthogonal();
-      const Eigen::Vector3d second = direction.cross(first);
-      for (std::size_t i = 0; i < 3; ++i) {
-        block.across[0][i][k] = first[static_cast<Eigen::Index>(i)];
-        block.across[1][i][k] = second[static_cast<Eigen::Index>(i)];
       }
     }
   }
@@ -500,7 +454,7 @@ struct CompensatedInverse::Implementation {
       block.count = std::min(kBlock, commands.count - first);
       load(block, commands, first);
       goals(block, first);
-      check_goals(block);
+      check_goals(block, options.target);
       fill_up(block);
       solve(block);
       store(block, commands, corrected, first);

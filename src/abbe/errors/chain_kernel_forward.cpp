@@ -53,16 +53,16 @@ HWY_INLINE void turn_all_back(const ErrorRotation& e, Moving<kColumns>& m) {
 }
 
 /// What the operations of a step are. Known to the compiler where it is the usual one, so that no vector asks.
-struct Shape {
+struct StepShape {
   bool rotary, inverted, error_first, has_errors, has_angles, first_order;
 };
-Shape shape_of(const AxisStep& step) {
+StepShape shape_of(const AxisStep& step) {
   return {step.rotary, step.inverted, step.error_first, step.has_errors, step.has_angles, step.first_order};
 }
 
 /// @param kLarge  angles may be beyond the short series
 template <int kColumns, bool kLarge>
-HWY_INLINE void apply_error(const Shape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
+HWY_INLINE void apply_error(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
                             Moving<kColumns>& m) {
   const Vector3 shift = load(lanes.error, k);
   if (!shape.has_angles) {
@@ -93,7 +93,7 @@ HWY_INLINE void apply_error(const Shape shape, const AxisStep& step, const AxisL
 }
 
 template <int kColumns>
-HWY_INLINE void apply_motion(const Shape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
+HWY_INLINE void apply_motion(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
                              Moving<kColumns>& m) {
   if (!shape.rotary) {
     const Vector way = hn::Mul(hn::Add(load(lanes.position.v + k), set(step.zero_position)), set(step.sign));
@@ -123,7 +123,7 @@ HWY_INLINE void keep(const Moving<kColumns>& m, State& state, std::size_t k) {
 
 /// One vector of poses.
 template <int kColumns, bool kLarge>
-HWY_INLINE void pass_vector(const Shape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
+HWY_INLINE void pass_vector(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
                             State& state) {
   Moving<kColumns> m = moving_at<kColumns>(state, k);
   if (shape.has_errors && shape.error_first) apply_error<kColumns, kLarge>(shape, step, lanes, k, m);
@@ -138,7 +138,7 @@ HWY_NOINLINE void pass_large_angles(const AxisStep& step, const AxisLanes& lanes
 }
 
 template <int kColumns>
-HWY_INLINE void pass_shape(const Shape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t end,
+HWY_INLINE void pass_shape(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t end,
                            State& state) {
   const bool turns = shape.has_errors && shape.has_angles && !shape.first_order;
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
@@ -157,7 +157,7 @@ HWY_NOINLINE void pass_any_axis(const AxisStep& step, const AxisLanes& lanes, st
 /// Errors with angles, composed exactly in the order of ISO 230-1.
 template <int kColumns, bool kRotary, bool kInverted>
 HWY_NOINLINE void pass_usual_axis(const AxisStep& step, const AxisLanes& lanes, std::size_t end, State& state) {
-  constexpr Shape kShape{kRotary, kInverted, kRotary == kInverted, true, true, false};
+  constexpr StepShape kShape{kRotary, kInverted, kRotary == kInverted, true, true, false};
   pass_shape<kColumns>(kShape, step, lanes, end, state);
 }
 
@@ -182,7 +182,7 @@ HWY_NOINLINE void pass_moving_axis(const AxisStep& step, const AxisLanes& lanes,
                                    State& state) {
   LineLanes line;
   displace_lines(step, factor, end, line);
-  const Shape shape = shape_of(step);
+  const StepShape shape = shape_of(step);
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     Moving<kColumns> m = moving_at<kColumns>(state, k);
     if (step.has_errors && step.error_first) apply_error<kColumns, true>(shape, step, lanes, k, m);

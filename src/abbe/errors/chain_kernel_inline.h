@@ -142,23 +142,19 @@ inline HWY_NOINLINE ErrorRotation with_large_angles(const Vector3& angles, const
   e.c = choose(large, sine_cosine(angles.z), e.c);
   return e;
 }
+HWY_INLINE Vector3 squares_of(const Vector3& a) { return {hn::Mul(a.x, a.x), hn::Mul(a.y, a.y), hn::Mul(a.z, a.z)}; }
 /// Whether any pose of the vector needs the full range.
 HWY_INLINE bool has_large_angles(const Vector3& angles) {
-  const Vector3 z = {hn::Mul(angles.x, angles.x), hn::Mul(angles.y, angles.y), hn::Mul(angles.z, angles.z)};
+  const Vector3 z = squares_of(angles);
   return !hn::AllFalse(Tag(), hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16)));
 }
-/// Where no angle is large.
 HWY_INLINE ErrorRotation short_error_rotation(const Vector3& angles) {
-  const Vector3 z = {hn::Mul(angles.x, angles.x), hn::Mul(angles.y, angles.y), hn::Mul(angles.z, angles.z)};
+  const Vector3 z = squares_of(angles);
   return {short_sine_cosine(angles.x, z.x), short_sine_cosine(angles.y, z.y), short_sine_cosine(angles.z, z.z)};
 }
 HWY_INLINE ErrorRotation error_rotation(const Vector3& angles) {
   const ErrorRotation e = short_error_rotation(angles);
-  if (HWY_UNLIKELY(has_large_angles(angles))) {
-    const Vector3 z = {hn::Mul(angles.x, angles.x), hn::Mul(angles.y, angles.y), hn::Mul(angles.z, angles.z)};
-    return with_large_angles(angles, z, e);
-  }
-  return e;
+  return HWY_UNLIKELY(has_large_angles(angles)) ? with_large_angles(angles, squares_of(angles), e) : e;
 }
 /// (I + skew(e))^-1 r, for the first-order composition of published models.
 HWY_INLINE Vector3 first_order_inverse(const Vector3& e, const Vector3& r) {
@@ -394,8 +390,6 @@ inline HWY_NOINLINE void evaluate_fourier(const FunctionGroup& group, const doub
       const std::size_t end = series.size > first ? std::min(series.size - first, kHarmonics) : 0;
       const double* pairs = c + 2 * first + 1;
       switch (end) {
-        case 0:
-          break;
         case 1:
           add_harmonics<kVectors, 1>(pairs, harmonic, value);
           break;
@@ -405,7 +399,7 @@ inline HWY_NOINLINE void evaluate_fourier(const FunctionGroup& group, const doub
         case 3:
           add_harmonics<kVectors, 3>(pairs, harmonic, value);
           break;
-        default:
+        case kHarmonics:
           add_harmonics<kVectors, kHarmonics>(pairs, harmonic, value);
           break;
       }

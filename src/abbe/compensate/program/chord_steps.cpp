@@ -1,27 +1,54 @@
 #include "abbe/compensate/program/chord_steps.h"
 
-#include "abbe/errors/chain_kernel_targets.h"
-
+// Vectors are kept in structures here, which the sizeless vectors of SVE and RISC-V do not allow.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "abbe/compensate/program/chord_steps.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
-#include "abbe/errors/chain_kernel_inline.h"
+#include "hwy/contrib/math/math-inl.h"
+#include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace abbe::chord {
 namespace HWY_NAMESPACE {
 namespace {
 
-using namespace abbe::chain::HWY_NAMESPACE;
+namespace hn = hwy::HWY_NAMESPACE;
 
+using Tag = hn::CappedTag<double, 8>;
+using Vector = hn::Vec<Tag>;
 using Lanes = CorrectionBlock::Lanes;
 
-constexpr double kWellSpread = 1e-3;  // determinant against the squares above which an inverse keeps its digits
-constexpr double kRoom = 2;           // within this part of the bounds of CorrectionStep nothing is bounded on the way
-constexpr double kSmallSine = 1e-3;   // below, the first two terms of its series give the angle to rounding
-constexpr double kWellWithin = 0.1;   // of the tolerance
-constexpr double kGain = 0.25;        // of what was missing: a step that leaves more does not serve
+constexpr double kSpread = 1e-3;     // determinant against the squares above which an inverse keeps its digits
+constexpr double kRoom = 2;          // within this part of the bounds of CorrectionStep nothing is bounded on the way
+constexpr double kShortSine = 1e-3;  // below, the first two terms of its series give the angle to rounding
+constexpr double kWellWithin = 0.1;  // of the tolerance
+constexpr double kGain = 0.25;       // of what was missing: a step that leaves more does not serve
+
+HWY_INLINE Vector set(double value) { return hn::Set(Tag(), value); }
+
+struct Vector3 {
+  Vector x, y, z;
+};
+HWY_INLINE Vector3 set3(const double* p) { return {set(p[0]), set(p[1]), set(p[2])}; }
+HWY_INLINE Vector3 operator+(const Vector3& a, const Vector3& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vector3 operator-(const Vector3& a, const Vector3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector dot(const Vector3& a, const Vector3& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+HWY_INLINE Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
+          hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
+}
+HWY_INLINE std::size_t whole_vectors(std::size_t count) {
+  const std::size_t n = hn::Lanes(Tag());
+  return (count + n - 1) / n * n;
+}
 
 HWY_INLINE Vector3 at(const Lanes* lanes, std::size_t k) {
   const Tag d;
@@ -56,14 +83,14 @@ HWY_INLINE Vector3 times_columns(const Frame& f, const double* v) {
 }
 /// The frame turned about a line of its own: its columns about the line's direction as the workpiece sees it.
 HWY_INLINE void turn_frame(const Vector3& axis, const Vector3& centre, Vector angle, Frame& f) {
-  const SineCosine a = sine_cosine(angle);
-  const Vector rest = hn::Sub(set(1.0), a.cosine);
+  const Vector sine = hn::Sin(Tag(), angle), cosine = hn::Cos(Tag(), angle);
+  const Vector rest = hn::Sub(set(1.0), cosine);
   const auto turned = [&](const Vector3& v) HWY_ATTR {
     const Vector along = hn::Mul(dot(axis, v), rest);
     const Vector3 across = cross(axis, v);
-    return Vector3{hn::MulAdd(axis.x, along, hn::MulAdd(across.x, a.sine, hn::Mul(v.x, a.cosine))),
-                   hn::MulAdd(axis.y, along, hn::MulAdd(across.y, a.sine, hn::Mul(v.y, a.cosine))),
-                   hn::MulAdd(axis.z, along, hn::MulAdd(across.z, a.sine, hn::Mul(v.z, a.cosine)))};
+    return Vector3{hn::MulAdd(axis.x, along, hn::MulAdd(across.x, sine, hn::Mul(v.x, cosine))),
+                   hn::MulAdd(axis.y, along, hn::MulAdd(across.y, sine, hn::Mul(v.y, cosine))),
+                   hn::MulAdd(axis.z, along, hn::MulAdd(across.z, sine, hn::Mul(v.z, cosine)))};
   };
   f.x = turned(f.x);
   f.y = turned(f.y);
@@ -116,7 +143,7 @@ HWY_INLINE Missing missing_at(const ChordSteps::Numbers& n, const CorrectionBloc
   const Vector3 goal = at(block.goal_direction.data(), k), direction = at(block.direction.data(), k);
   const Vector3 axis = cross(direction, goal);
   const Vector square = dot(axis, axis);
-  m.is_near = hn::And(hn::Lt(square, set(kSmallSine * kSmallSine)), hn::Gt(dot(direction, goal), set(0.0)));
+  m.is_near = hn::And(hn::Lt(square, set(kShortSine * kShortSine)), hn::Gt(dot(direction, goal), set(0.0)));
   m.turn = by(axis, hn::MulAdd(square, set(1.0 / 6), set(1.0)));
   m.angle = n.oriented ? hn::Sqrt(dot(m.turn, m.turn)) : set(0.0);
   return m;
@@ -135,7 +162,7 @@ void StartChord(const ChordSteps::Numbers& n, const CorrectionBlock& block, Chor
       const Vector turns = dot(cross(a0, a1), direction), square = hn::Add(dot(a0, a0), dot(a1, a1));
       const Vector inverse = hn::Div(set(1.0), turns), size = hn::Abs(turns);
       // A value that the smallest singular value is surely not below, as in CorrectionStep::take_derivative().
-      const auto spread = hn::Gt(size, hn::Mul(set(kWellSpread), square));
+      const auto spread = hn::Gt(size, hn::Mul(set(kSpread), square));
       const auto short_turn = hn::Gt(hn::Mul(size, set(n.largest_turn / kRoom)), hn::Mul(m.angle, hn::Sqrt(square)));
       serves = hn::And(hn::And(serves, m.is_near), hn::And(spread, short_turn));
       const Vector3 h0 = by(a1, inverse), h1 = by(a0, hn::Neg(inverse));
@@ -152,7 +179,7 @@ void StartChord(const ChordSteps::Numbers& n, const CorrectionBlock& block, Chor
     put(by(cross(t.reach[2], t.reach[0]), inverse), chord.reach[1], k);
     put(by(cross(t.reach[0], t.reach[1]), inverse), chord.reach[2], k);
     // The directions are unit vectors: half the sum of their squares is 3 / 2.
-    const auto spread = hn::Gt(hn::Abs(determinant), set(kWellSpread * 1.8371173070873836));
+    const auto spread = hn::Gt(hn::Abs(determinant), set(kSpread * 1.8371173070873836));
     const auto short_way = hn::Gt(hn::Mul(hn::Abs(determinant), set(n.largest_shift / 1.5)),
                                   hn::Mul(hn::Sqrt(dot(rest, rest)), set(2 * kRoom)));
     serves = hn::And(serves, hn::And(spread, short_way));

@@ -53,6 +53,11 @@ Eigen::Vector3d vector_at(const std::array<CorrectionBlock::Lanes, N>& lanes, st
 /// Matrix of row-major elements.
 Eigen::Matrix3d matrix_at(const std::array<CorrectionBlock::Lanes, 9>& lanes, std::size_t k);
 
+/// Ends poses whose goals are no numbers.
+void check_goals(CorrectionBlock& block, TargetKind target);
+/// Vectors are read as a whole: numbers where there is no pose.
+void fill_up(CorrectionBlock& block);
+
 /// Newton steps of single poses of a block from what is missing and the derivative by the commands.
 class CorrectionStep {
  public:
@@ -68,6 +73,8 @@ class CorrectionStep {
   const std::vector<std::size_t>& reaching() const { return reaching_; }
   bool is_inverted() const { return is_inverted_; }  ///< as WorkingAxes
 
+  /// Two directions at right angles to the wanted one, which all steps need.
+  void find_across(CorrectionBlock& block) const;
   /// Prepares steps with the derivative CorrectionBlock::by_command[(axis * rows + row) * count + k].
   void take_derivative(CorrectionBlock& block) const;
   /// One step of one pose, or its end.
