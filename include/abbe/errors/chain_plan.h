@@ -33,7 +33,7 @@ struct PointArrays {
   double* y = nullptr;
   double* z = nullptr;
 };
-/// Row-major elements r[3 * row + column], each [count]; all null: not wanted.
+/// Row-major elements r[3 * row + column], each [count]; all null: not wanted. Or one column alone, which is quicker.
 struct RotationArrays {
   double* r[9] = {};
 };

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "abbe/compensate/program/chord_steps.h"
 #include "abbe/compensate/program/correction_step.h"
 #include "abbe/errors/error_states.h"
 #include "abbe/geometry/angle_units.h"
@@ -18,7 +20,8 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kBlock = kCorrectionBlock;
-constexpr int kRefresh = 6;  // iterations after which the derivative is taken anew
+constexpr int kRefresh = 6;     // iterations after which the derivative is taken anew
+constexpr int kChordSteps = 6;  // with the derivative of the nominal machine, before the actual one is taken
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 using Block = CorrectionBlock;
@@ -109,8 +112,12 @@ struct CompensatedInverse::Implementation {
       for (const HeldAxis& axis : kept) keeping.axes[axis.axis].setting = true;
       branches = std::make_unique<InverseKinematics>(keeping);
     }
+    if (stepper->is_straight()) chords.emplace(machine, options, stepper->turning(), stepper->reaching());
     actual = std::make_unique<ChainPlan>(machine, errors, Body::tool, Body::workpiece);
     nominal = std::make_unique<ChainPlan>(machine, ErrorSet{}, Body::tool, Body::workpiece);
+    for (int i = 0; i < 3; ++i) {
+      if (machine.tool_direction == Eigen::Vector3d::Unit(i)) along = i;
+    }
     for (std::size_t i = 0; i < 3; ++i) {
       const Eigen::Index e = static_cast<Eigen::Index>(i);
       nominal_tool[i].fill(machine.tool_offset[e]);
@@ -133,12 +140,32 @@ struct CompensatedInverse::Implementation {
     return {};
   }
 
-  /// Where the tool is by now, and what of the wanted pose is missing.
-  void evaluate(Block& block) const {
+  /// Where a machine has its tool at the positions of the block: its point, and its rotation or its direction.
+  void pose(const ChainPlan& plan, Block& block, const std::array<Lanes, 3>& tool, std::array<Lanes, 3>& point,
+            std::array<Lanes, 9>& rotation, std::array<Lanes, 3>& direction, std::uint8_t* covered) const {
     const AxisPointers axes = pointers(block.position);
-    actual->transform({{axes.data(), machine.axes.size()}, block.count, block.given_states()},
-                      {actual_tool[0].data(), actual_tool[1].data(), actual_tool[2].data()}, pointers(block.point),
-                      pointers(block.rotation), block.covered.data());
+    const PositionArrays positions{{axes.data(), machine.axes.size()}, block.count, block.given_states()};
+    const ConstPointArrays start{tool[0].data(), tool[1].data(), tool[2].data()};
+    RotationArrays columns = pointers(rotation);
+    const bool is_column = options.target != TargetKind::full_pose && along >= 0;
+    if (is_column) {
+      columns = {};
+      for (std::size_t i = 0; i < 3; ++i) columns.r[3 * i + static_cast<std::size_t>(along)] = direction[i].data();
+    }
+    plan.transform(positions, start, pointers(point), columns, covered);
+    if (is_column) return;
+    const Eigen::Vector3d& of_tool = machine.tool_direction;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < block.count; ++k) {
+        direction[i][k] =
+            rotation[3 * i][k] * of_tool[0] + rotation[3 * i + 1][k] * of_tool[1] + rotation[3 * i + 2][k] * of_tool[2];
+      }
+    }
+  }
+
+  /// Where the tool is by now.
+  void evaluate(Block& block) const {
+    pose(*actual, block, actual_tool, block.point, block.rotation, block.direction, block.covered.data());
   }
 
   /// Derivatives of point and orientation by all commands, where the block stands.
@@ -241,6 +268,36 @@ struct CompensatedInverse::Implementation {
     }
   }
 
+  bool is_within_travel(const Block& block, std::size_t k) const {
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const Axis& axis = machine.axes[i];
+      const double position = block.position[i][k];
+      if (!axis.endless && !(position >= axis.travel_min && position <= axis.travel_max)) return false;
+    }
+    return true;
+  }
+
+  /// Finishes the poses that are reached by steps of whole blocks within the travels. All others stand as they came.
+  void take_chords(Block& block) const {
+    ChordBlock chord;
+    chords->start(block, chord);
+    const int most = std::min(kChordSteps, options.largest_iterations);
+    for (int i = 0; i < most && chords->step(block, chord); ++i) {
+      if (i + 1 < most) evaluate(block);
+    }
+    bool moved = false;
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (block.active[k] == 0) continue;
+      if (chord.left[k] == 0 && is_within_travel(block, k)) {
+        CorrectionStep::finish(block, k, CorrectionStatus::reached);
+      } else {
+        as_they_came(block, k);
+        moved = true;
+      }
+    }
+    if (moved) evaluate(block);
+  }
+
   void solve(Block& block) const {
     evaluate(block);
     for (std::size_t k = 0; k < block.count; ++k) {
@@ -250,6 +307,9 @@ struct CompensatedInverse::Implementation {
         block.position_residual[k] = block.orientation_residual[k] = kUnknown;
       }
     }
+    if (chords) take_chords(block);
+    if (!any_active(block)) return;
+    stepper->find_across(block);
     std::array<std::uint8_t, kBlock> kept{}, moved{};
     iterate(block);
     give_up(block, kept, moved);
@@ -311,24 +371,6 @@ struct CompensatedInverse::Implementation {
     }
   }
 
-  void load_goals(Block& block) const {
-    for (std::size_t k = 0; k < block.count; ++k) {
-      Eigen::Vector3d direction = vector_at(block.goal_direction, k);
-      if (options.target == TargetKind::full_pose)
-        direction = matrix_at(block.goal_rotation, k) * machine.tool_direction;
-      if (!vector_at(block.goal_point, k).allFinite() || !direction.allFinite()) {
-        CorrectionStep::finish(block, k, CorrectionStatus::not_finite);
-        direction = Eigen::Vector3d::UnitZ();
-      }
-      const Eigen::Vector3d first = direction.unitOrthogonal();
-      const Eigen::Vector3d second = direction.cross(first);
-      for (std::size_t i = 0; i < 3; ++i) {
-        block.across[0][i][k] = first[static_cast<Eigen::Index>(i)];
-        block.across[1][i][k] = second[static_cast<Eigen::Index>(i)];
-      }
-    }
-  }
-
   /// @param commands  may be the arrays that are written
   void store(const Block& block, PositionArrays commands, const CorrectedArrays& corrected, std::size_t first) const {
     for (std::size_t k = 0; k < block.count; ++k) {
@@ -351,18 +393,7 @@ struct CompensatedInverse::Implementation {
 
   /// The poses that the nominal machine has at the commands.
   void nominal_goals(Block& block) const {
-    const AxisPointers axes = pointers(block.position);
-    nominal->transform({{axes.data(), machine.axes.size()}, block.count},
-                       {nominal_tool[0].data(), nominal_tool[1].data(), nominal_tool[2].data()},
-                       pointers(block.goal_point), pointers(block.goal_rotation));
-    const Eigen::Vector3d& tool = machine.tool_direction;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < block.count; ++k) {
-        block.goal_direction[i][k] = block.goal_rotation[3 * i][k] * tool[0] +
-                                     block.goal_rotation[3 * i + 1][k] * tool[1] +
-                                     block.goal_rotation[3 * i + 2][k] * tool[2];
-      }
-    }
+    pose(*nominal, block, nominal_tool, block.goal_point, block.goal_rotation, block.goal_direction, nullptr);
   }
 
   /// A pose that the nominal arm reaches only beyond an end of travel may be within the travel of the actual one.
@@ -423,7 +454,8 @@ struct CompensatedInverse::Implementation {
       block.count = std::min(kBlock, commands.count - first);
       load(block, commands, first);
       goals(block, first);
-      load_goals(block);
+      check_goals(block, options.target);
+      fill_up(block);
       solve(block);
       store(block, commands, corrected, first);
     }
@@ -433,9 +465,11 @@ struct CompensatedInverse::Implementation {
   CorrectionOptions options;
   std::string problem;
   std::unique_ptr<CorrectionStep> stepper;
+  std::optional<ChordSteps> chords;
   std::unique_ptr<InverseKinematics> branches;  // of an arm
   std::unique_ptr<ChainPlan> actual, nominal;
   std::array<Lanes, 3> actual_tool, nominal_tool;
+  int along = -1;  // the column of the rotation that is the tool direction; -1: none
   Lanes zeros, ones;
   std::array<bool, kMaxAxes> repeats{};
 };

@@ -52,16 +52,26 @@ HWY_INLINE void turn_all_back(const ErrorRotation& e, Moving<kColumns>& m) {
   for (int i = 0; i < kColumns; ++i) turn_back(e.a, m.column[i].y, m.column[i].z);
 }
 
-template <int kColumns>
-HWY_INLINE void apply_error(const AxisStep& step, const AxisLanes& lanes, std::size_t k, Moving<kColumns>& m) {
-  const Vector3 reference = set3(step.reference), shift = load(lanes.error, k);
-  if (!step.has_angles) {
-    m.point = step.inverted ? m.point - shift : m.point + shift;
+/// What the operations of a step are. Known to the compiler where it is the usual one, so that no vector asks.
+struct StepShape {
+  bool rotary, inverted, error_first, has_errors, has_angles, first_order;
+};
+StepShape shape_of(const AxisStep& step) {
+  return {step.rotary, step.inverted, step.error_first, step.has_errors, step.has_angles, step.first_order};
+}
+
+/// @param kLarge  angles may be beyond the short series
+template <int kColumns, bool kLarge>
+HWY_INLINE void apply_error(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
+                            Moving<kColumns>& m) {
+  const Vector3 shift = load(lanes.error, k);
+  if (!shape.has_angles) {
+    m.point = shape.inverted ? m.point - shift : m.point + shift;
     return;
   }
-  const Vector3 angles = load(lanes.error + 3, k);
-  if (step.first_order) {
-    if (step.inverted) {
+  const Vector3 reference = set3(step.reference), angles = load(lanes.error + 3, k);
+  if (shape.first_order) {
+    if (shape.inverted) {
       m.point = reference + first_order_inverse(angles, m.point - reference - shift);
       for (int i = 0; i < kColumns; ++i) m.column[i] = first_order_inverse(angles, m.column[i]);
     } else {
@@ -70,9 +80,9 @@ HWY_INLINE void apply_error(const AxisStep& step, const AxisLanes& lanes, std::s
     }
     return;
   }
-  const ErrorRotation e = error_rotation(angles);
+  const ErrorRotation e = kLarge ? error_rotation(angles) : short_error_rotation(angles);
   if (step.has_reference) m.point = m.point - reference;
-  if (step.inverted) {
+  if (shape.inverted) {
     m.point = m.point - shift;
     turn_all_back(e, m);
   } else {
@@ -83,8 +93,9 @@ HWY_INLINE void apply_error(const AxisStep& step, const AxisLanes& lanes, std::s
 }
 
 template <int kColumns>
-HWY_INLINE void apply_motion(const AxisStep& step, const AxisLanes& lanes, std::size_t k, Moving<kColumns>& m) {
-  if (!step.rotary) {
+HWY_INLINE void apply_motion(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
+                             Moving<kColumns>& m) {
+  if (!shape.rotary) {
     const Vector way = hn::Mul(hn::Add(load(lanes.position.v + k), set(step.zero_position)), set(step.sign));
     m.point = {hn::MulAdd(way, set(step.direction[0]), m.point.x), hn::MulAdd(way, set(step.direction[1]), m.point.y),
                hn::MulAdd(way, set(step.direction[2]), m.point.z)};
@@ -98,16 +109,70 @@ HWY_INLINE void apply_motion(const AxisStep& step, const AxisLanes& lanes, std::
 }
 
 template <int kColumns>
-HWY_NOINLINE void pass_axis(const AxisStep& step, const AxisLanes& lanes, std::size_t end, State& state) {
+HWY_INLINE Moving<kColumns> moving_at(const State& state, std::size_t k) {
+  Moving<kColumns> m;
+  m.point = load(state.point, k);
+  for (int i = 0; i < kColumns; ++i) m.column[i] = load(state.column[i], k);
+  return m;
+}
+template <int kColumns>
+HWY_INLINE void keep(const Moving<kColumns>& m, State& state, std::size_t k) {
+  store(m.point, state.point, k);
+  for (int i = 0; i < kColumns; ++i) store(m.column[i], state.column[i], k);
+}
+
+/// One vector of poses.
+template <int kColumns, bool kLarge>
+HWY_INLINE void pass_vector(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
+                            State& state) {
+  Moving<kColumns> m = moving_at<kColumns>(state, k);
+  if (shape.has_errors && shape.error_first) apply_error<kColumns, kLarge>(shape, step, lanes, k, m);
+  apply_motion(shape, step, lanes, k, m);
+  if (shape.has_errors && !shape.error_first) apply_error<kColumns, kLarge>(shape, step, lanes, k, m);
+  keep(m, state, k);
+}
+
+template <int kColumns>
+HWY_NOINLINE void pass_large_angles(const AxisStep& step, const AxisLanes& lanes, std::size_t k, State& state) {
+  pass_vector<kColumns, true>(shape_of(step), step, lanes, k, state);
+}
+
+template <int kColumns>
+HWY_INLINE void pass_shape(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t end,
+                           State& state) {
+  const bool turns = shape.has_errors && shape.has_angles && !shape.first_order;
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
-    Moving<kColumns> m;
-    m.point = load(state.point, k);
-    for (int i = 0; i < kColumns; ++i) m.column[i] = load(state.column[i], k);
-    if (step.has_errors && step.error_first) apply_error(step, lanes, k, m);
-    apply_motion(step, lanes, k, m);
-    if (step.has_errors && !step.error_first) apply_error(step, lanes, k, m);
-    store(m.point, state.point, k);
-    for (int i = 0; i < kColumns; ++i) store(m.column[i], state.column[i], k);
+    // Apart, so that what is rare costs the rest no registers.
+    if (turns && HWY_UNLIKELY(has_large_angles(load(lanes.error + 3, k)))) {
+      pass_large_angles<kColumns>(step, lanes, k, state);
+    } else {
+      pass_vector<kColumns, false>(shape, step, lanes, k, state);
+    }
+  }
+}
+template <int kColumns>
+HWY_NOINLINE void pass_any_axis(const AxisStep& step, const AxisLanes& lanes, std::size_t end, State& state) {
+  pass_shape<kColumns>(shape_of(step), step, lanes, end, state);
+}
+/// Errors with angles, composed exactly in the order of ISO 230-1.
+template <int kColumns, bool kRotary, bool kInverted>
+HWY_NOINLINE void pass_usual_axis(const AxisStep& step, const AxisLanes& lanes, std::size_t end, State& state) {
+  constexpr StepShape kShape{kRotary, kInverted, kRotary == kInverted, true, true, false};
+  pass_shape<kColumns>(kShape, step, lanes, end, state);
+}
+
+template <int kColumns>
+HWY_INLINE void pass_axis(const AxisStep& step, const AxisLanes& lanes, std::size_t end, State& state) {
+  const bool usual =
+      step.has_errors && step.has_angles && !step.first_order && step.error_first == (step.rotary == step.inverted);
+  if (!usual) {
+    pass_any_axis<kColumns>(step, lanes, end, state);
+  } else if (step.rotary) {
+    step.inverted ? pass_usual_axis<kColumns, true, true>(step, lanes, end, state)
+                  : pass_usual_axis<kColumns, true, false>(step, lanes, end, state);
+  } else {
+    step.inverted ? pass_usual_axis<kColumns, false, true>(step, lanes, end, state)
+                  : pass_usual_axis<kColumns, false, false>(step, lanes, end, state);
   }
 }
 
@@ -117,11 +182,10 @@ HWY_NOINLINE void pass_moving_axis(const AxisStep& step, const AxisLanes& lanes,
                                    State& state) {
   LineLanes line;
   displace_lines(step, factor, end, line);
+  const StepShape shape = shape_of(step);
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
-    Moving<kColumns> m;
-    m.point = load(state.point, k);
-    for (int i = 0; i < kColumns; ++i) m.column[i] = load(state.column[i], k);
-    if (step.has_errors && step.error_first) apply_error(step, lanes, k, m);
+    Moving<kColumns> m = moving_at<kColumns>(state, k);
+    if (step.has_errors && step.error_first) apply_error<kColumns, true>(shape, step, lanes, k, m);
     const Vector3 direction = load(line.direction, k);
     const Vector position = load(lanes.position.v + k), zero_position = load(line.zero_position.v + k);
     if (step.rotary) {
@@ -132,14 +196,14 @@ HWY_NOINLINE void pass_moving_axis(const AxisStep& step, const AxisLanes& lanes,
     } else {
       m.point = plus_scaled(m.point, direction, hn::Mul(hn::Add(position, zero_position), set(step.sign)));
     }
-    if (step.has_errors && !step.error_first) apply_error(step, lanes, k, m);
-    store(m.point, state.point, k);
-    for (int i = 0; i < kColumns; ++i) store(m.column[i], state.column[i], k);
+    if (step.has_errors && !step.error_first) apply_error<kColumns, true>(shape, step, lanes, k, m);
+    keep(m, state, k);
   }
 }
 
+/// @param first_column  of the rotation, the first that is carried
 template <int kColumns>
-HWY_NOINLINE void begin(const ConstantTransform& start, std::size_t end, State& state) {
+HWY_NOINLINE void begin(const ConstantTransform& start, int first_column, std::size_t end, State& state) {
   const Matrix3 turn = set_matrix(start.rotation);
   const Vector3 offset = set3(start.offset);
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
@@ -147,7 +211,8 @@ HWY_NOINLINE void begin(const ConstantTransform& start, std::size_t end, State& 
     if (start.turns) p = times(turn, p);
     store(p + offset, state.point, k);
     for (int i = 0; i < kColumns; ++i) {
-      store({set(start.rotation[i]), set(start.rotation[3 + i]), set(start.rotation[6 + i])}, state.column[i], k);
+      const double* r = start.rotation + first_column + i;
+      store({set(r[0]), set(r[3]), set(r[6])}, state.column[i], k);
     }
   }
 }
@@ -181,16 +246,16 @@ HWY_NOINLINE void finish(const ConstantTransform& last, const Results& results, 
         if (last.turns) column[i] = times(turn, column[i]);
       }
       if constexpr (kColumns == 2) column[2] = cross(column[0], column[1]);
-      for (int i = 0; i < 3; ++i) write(column[i], results.column[i], k, count);
+      for (int i = 0; i < (kColumns == 1 ? 1 : 3); ++i) write(column[i], results.column[i], k, count);
     }
   }
 }
 
 template <int kColumns>
 void run(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
-         const Results& results, State& state, AxisLanes& lanes, const Lane* factor) {
+         const Results& results, State& state, AxisLanes& lanes, const Lane* factor, int alone = 0) {
   const std::size_t end = whole_vectors(count);
-  begin<kColumns>(chain.start, end, state);
+  begin<kColumns>(chain.start, alone, end, state);
   for (const AxisStep& step : chain.steps) {
     evaluate_axis(chain, step, positions.axis[step.axis] + first, count, lanes, factor);
     if (step.moving_line) {
@@ -202,6 +267,14 @@ void run(const CompiledChain& chain, const PositionArrays& positions, std::size_
   finish<kColumns>(chain.end, results, count, state);
 }
 
+/// The column that is wanted alone; -1: none or all.
+int only_column(const RotationArrays& rotation) {
+  for (int i = 0; i < 3; ++i) {
+    if (rotation.r[i] != nullptr && rotation.r[(i + 1) % 3] == nullptr && rotation.r[(i + 2) % 3] == nullptr) return i;
+  }
+  return -1;
+}
+
 /// @param factor  of the states of the chain; null if it has none
 void transform_with(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
                     const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
@@ -209,11 +282,16 @@ void transform_with(const CompiledChain& chain, const PositionArrays& positions,
   State state;
   AxisLanes lanes;
   Results results{{seen.x + first, seen.y + first, seen.z + first}, {}};
-  for (int i = 0; rotation.r[0] != nullptr && i < 9; ++i) results.column[i % 3][i / 3] = rotation.r[i] + first;
+  const int alone = only_column(rotation);
+  for (int i = 0; i < 9; ++i) {
+    if (rotation.r[i] != nullptr) results.column[alone < 0 ? i % 3 : 0][i / 3] = rotation.r[i] + first;
+  }
   read_lane(start.x + first, count, state.point[0]);
   read_lane(start.y + first, count, state.point[1]);
   read_lane(start.z + first, count, state.point[2]);
-  if (rotation.r[0] == nullptr) {
+  if (alone >= 0) {
+    run<1>(chain, positions, first, count, results, state, lanes, factor, alone);
+  } else if (rotation.r[0] == nullptr) {
     run<0>(chain, positions, first, count, results, state, lanes, factor);
   } else if (chain.first_order) {
     run<3>(chain, positions, first, count, results, state, lanes, factor);

@@ -142,13 +142,19 @@ inline HWY_NOINLINE ErrorRotation with_large_angles(const Vector3& angles, const
   e.c = choose(large, sine_cosine(angles.z), e.c);
   return e;
 }
+HWY_INLINE Vector3 squares_of(const Vector3& a) { return {hn::Mul(a.x, a.x), hn::Mul(a.y, a.y), hn::Mul(a.z, a.z)}; }
+/// Whether any pose of the vector needs the full range.
+HWY_INLINE bool has_large_angles(const Vector3& angles) {
+  const Vector3 z = squares_of(angles);
+  return !hn::AllFalse(Tag(), hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16)));
+}
+HWY_INLINE ErrorRotation short_error_rotation(const Vector3& angles) {
+  const Vector3 z = squares_of(angles);
+  return {short_sine_cosine(angles.x, z.x), short_sine_cosine(angles.y, z.y), short_sine_cosine(angles.z, z.z)};
+}
 HWY_INLINE ErrorRotation error_rotation(const Vector3& angles) {
-  const Vector3 z = {hn::Mul(angles.x, angles.x), hn::Mul(angles.y, angles.y), hn::Mul(angles.z, angles.z)};
-  const ErrorRotation e{short_sine_cosine(angles.x, z.x), short_sine_cosine(angles.y, z.y),
-                        short_sine_cosine(angles.z, z.z)};
-  const auto large = hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16));
-  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), large))) return with_large_angles(angles, z, e);
-  return e;
+  const ErrorRotation e = short_error_rotation(angles);
+  return HWY_UNLIKELY(has_large_angles(angles)) ? with_large_angles(angles, squares_of(angles), e) : e;
 }
 /// (I + skew(e))^-1 r, for the first-order composition of published models.
 HWY_INLINE Vector3 first_order_inverse(const Vector3& e, const Vector3& r) {
@@ -348,10 +354,22 @@ HWY_INLINE SineCosine fourier_argument(double scale, bool shares_turn, const Axi
   return sine_cosine(hn::Mul(load(lanes.position.v + k), set(scale)));
 }
 
+constexpr std::size_t kHarmonics = 4;  // computed at once
+
+/// Their number is known, as that of the coefficients of horner().
+template <std::size_t kVectors, std::size_t kNumber>
+HWY_INLINE void add_harmonics(const double* pairs, const SineCosine (&harmonic)[kHarmonics][kVectors], Vector* value) {
+  for (std::size_t h = 0; h < kNumber; ++h) {
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      value[i] = hn::MulAdd(set(pairs[2 * h]), harmonic[h][i].cosine, value[i]);
+      value[i] = hn::MulAdd(set(pairs[2 * h + 1]), harmonic[h][i].sine, value[i]);
+    }
+  }
+}
+
 template <std::size_t kVectors>
 inline HWY_NOINLINE void evaluate_fourier(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
                                           std::size_t k, unsigned written, Lane* out) {
-  constexpr std::size_t kHarmonics = 4;
   std::size_t most = 0;
   for (const Series& series : group.series) most = std::max(most, series.size);
   SineCosine one[kVectors], harmonic[kHarmonics][kVectors], last[kVectors];
@@ -370,12 +388,20 @@ inline HWY_NOINLINE void evaluate_fourier(const FunctionGroup& group, const doub
       Vector value[kVectors];
       for (std::size_t i = 0; i < kVectors; ++i) value[i] = first == 0 ? set(c[0]) : hn::Zero(Tag());
       const std::size_t end = series.size > first ? std::min(series.size - first, kHarmonics) : 0;
-      for (std::size_t h = 0; h < end; ++h) {
-        const double* pair = c + 2 * (first + h) + 1;
-        for (std::size_t i = 0; i < kVectors; ++i) {
-          value[i] = hn::MulAdd(set(pair[0]), harmonic[h][i].cosine, value[i]);
-          value[i] = hn::MulAdd(set(pair[1]), harmonic[h][i].sine, value[i]);
-        }
+      const double* pairs = c + 2 * first + 1;
+      switch (end) {
+        case 1:
+          add_harmonics<kVectors, 1>(pairs, harmonic, value);
+          break;
+        case 2:
+          add_harmonics<kVectors, 2>(pairs, harmonic, value);
+          break;
+        case 3:
+          add_harmonics<kVectors, 3>(pairs, harmonic, value);
+          break;
+        case kHarmonics:
+          add_harmonics<kVectors, kHarmonics>(pairs, harmonic, value);
+          break;
       }
       add_to<kVectors>(out[series.component].v + k, (written >> series.component & 1) != 0, value);
       written |= 1u << series.component;

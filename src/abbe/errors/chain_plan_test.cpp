@@ -95,6 +95,37 @@ TEST(ChainPlan, KeepsTheFirstOrderFormTowardsTheBedAndInvertsIt) {
   }
 }
 
+TEST(ChainPlan, OneColumnOfTheRotationMayBeWantedAlone) {
+  for (std::uint64_t seed = 450; seed < 470; ++seed) {
+    Case c = random_case(seed, 0.4);
+    c.errors.composition.first_order = seed % 4 == 0;
+    const ChainPlan plan(c.machine, c.errors, Body::tool, Body::workpiece);
+    RandomStream random(seed, 3);
+    Batch all(c.machine, 37, random);
+    all.transform(plan);
+    std::vector<const double*> pointers;
+    for (const std::vector<double>& v : all.commands) pointers.push_back(v.data());
+    const ConstPointArrays start{all.start[0].data(), all.start[1].data(), all.start[2].data()};
+    for (std::size_t column = 0; column < 3; ++column) {
+      Batch some = all;
+      for (std::vector<double>& v : some.rotation) std::fill(v.begin(), v.end(), -1e300);
+      RotationArrays wanted;
+      for (std::size_t row = 0; row < 3; ++row) wanted.r[3 * row + column] = some.rotation[3 * row + column].data();
+      plan.transform({pointers, 37}, start, some.seen_arrays(), wanted);
+      for (std::size_t k = 0; k < 37; ++k) {
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(some.seen[i][k], all.seen[i][k]);
+        for (std::size_t i = 0; i < 9; ++i) {
+          if (i % 3 == column) {
+            EXPECT_NEAR(some.rotation[i][k], all.rotation[i][k], 4e-15) << "seed " << seed << " element " << i;
+          } else {
+            EXPECT_EQ(some.rotation[i][k], -1e300);
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(ChainPlan, DoesNotDependOnHowManyPosesAreEvaluatedTogether) {
   for (std::uint64_t seed = 500; seed < 504; ++seed) {
     // Angles around the limit of the short series, so that neighbours take different ways.

@@ -19,12 +19,56 @@ constexpr double kStandingPart = 0.1;           // of the tolerance: a step of t
 constexpr double kSmallSine = 1e-3;             // below, the first two terms of its series give the angle to rounding
 constexpr double kWellSpread = 1e-3;  // determinant against the squares above which an inverse keeps its digits
 
+constexpr std::size_t kWidestVector = 8;  // numbers
+
 }  // namespace
 
 Eigen::Matrix3d matrix_at(const std::array<CorrectionBlock::Lanes, 9>& lanes, std::size_t k) {
   Eigen::Matrix3d m;
   for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = lanes[static_cast<std::size_t>(i)][k];
   return m;
+}
+
+void fill_up(CorrectionBlock& block) {
+  for (std::size_t k = block.count; k < std::min(kCorrectionBlock, block.count + kWidestVector); ++k) {
+    for (CorrectionBlock::Lanes& lanes : block.position) lanes[k] = 0;
+    for (auto* three : {&block.point, &block.goal_point, &block.direction, &block.goal_direction}) {
+      for (CorrectionBlock::Lanes& lanes : *three) lanes[k] = 0;
+    }
+    block.position_residual[k] = block.orientation_residual[k] = 0;
+  }
+}
+
+void check_goals(CorrectionBlock& block, TargetKind target) {
+  // A difference of a number to itself is zero, of anything else it is no number.
+  CorrectionBlock::Lanes none{};
+  const auto note = [&](const CorrectionBlock::Lanes& lanes) {
+    for (std::size_t k = 0; k < block.count; ++k) none[k] += lanes[k] - lanes[k];
+  };
+  for (const CorrectionBlock::Lanes& lanes : block.goal_point) note(lanes);
+  if (target == TargetKind::full_pose) {
+    for (const CorrectionBlock::Lanes& lanes : block.goal_rotation) note(lanes);
+  } else {
+    for (const CorrectionBlock::Lanes& lanes : block.goal_direction) note(lanes);
+  }
+  for (std::size_t k = 0; k < block.count; ++k) {
+    if (none[k] != 0 || std::isnan(none[k])) CorrectionStep::finish(block, k, CorrectionStatus::not_finite);
+  }
+}
+
+void CorrectionStep::find_across(CorrectionBlock& block) const {
+  for (std::size_t k = 0; k < block.count; ++k) {
+    Eigen::Vector3d direction = vector_at(block.goal_direction, k);
+    if (options_.target == TargetKind::full_pose)
+      direction = matrix_at(block.goal_rotation, k) * machine_.tool_direction;
+    if (!direction.allFinite()) direction = Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d first = direction.unitOrthogonal();
+    const Eigen::Vector3d second = direction.cross(first);
+    for (std::size_t i = 0; i < 3; ++i) {
+      block.across[0][i][k] = first[entry(i)];
+      block.across[1][i][k] = second[entry(i)];
+    }
+  }
 }
 
 CorrectionStep::CorrectionStep(const Machine& machine, const CorrectionOptions& options,
@@ -41,7 +85,14 @@ void CorrectionStep::choose_axes(const std::vector<HeldAxis>& kept) {
   is_inverted_ = working.is_inverted;
   orientation_rows_ = working.orientation_rows;
   usual_ = orientation_rows_ == 2 && turning_.size() == 2 && reaching_.size() == 3;
-  for (const std::size_t axis : reaching_) usual_ = usual_ && machine_.axes[axis].kind == AxisKind::linear;
+  straight_ = usual_ || (orientation_rows_ == 0 && turning_.empty() && reaching_.size() == 3 && arm_.empty() &&
+                         options_.target != TargetKind::full_pose);
+  for (const std::size_t axis : reaching_) {
+    const bool linear = machine_.axes[axis].kind == AxisKind::linear;
+    usual_ = usual_ && linear;
+    straight_ = straight_ && linear;
+  }
+  straight_ = straight_ && machine_.couplings.empty();
 }
 
 /// Rotation vector that turns the tool to where it is wanted: about its length the shortest, for a direction.
@@ -49,7 +100,7 @@ Eigen::Vector3d CorrectionStep::orientation_error(const CorrectionBlock& block, 
   if (options_.target == TargetKind::full_pose) {
     return rotation_vector(matrix_at(block.goal_rotation, k) * matrix_at(block.rotation, k).transpose());
   }
-  const Eigen::Vector3d direction = matrix_at(block.rotation, k) * machine_.tool_direction;
+  const Eigen::Vector3d direction = vector_at(block.direction, k);
   const Eigen::Vector3d goal = vector_at(block.goal_direction, k);
   const Eigen::Vector3d axis = direction.cross(goal);
   const double square = axis.squaredNorm(), cosine = direction.dot(goal);

@@ -18,12 +18,12 @@ struct CorrectionBlock {
   using Lanes = std::array<double, kCorrectionBlock>;
 
   std::size_t count = 0;
-  std::array<Lanes, kMaxAxes> command;           // as they came
-  std::array<Lanes, kMaxAxes> position;          // as they are by now
-  std::array<Lanes, 3> point, goal_point;        // mm
-  std::array<Lanes, 9> rotation, goal_rotation;  // row-major
-  std::array<Lanes, 3> goal_direction;           // unit
-  std::array<Lanes, 3> across[2];                // unit vectors at right angles to the goal's direction
+  alignas(128) std::array<Lanes, kMaxAxes> command;  // as they came
+  std::array<Lanes, kMaxAxes> position;              // as they are by now
+  std::array<Lanes, 3> point, goal_point;            // mm
+  std::array<Lanes, 9> rotation, goal_rotation;      // row-major, of a full pose only
+  std::array<Lanes, 3> direction, goal_direction;    // unit, of the tool; else
+  std::array<Lanes, 3> across[2];                    // unit vectors at right angles to the goal's direction
   std::array<double, kMaxAxes * kMostCorrectionRows * kCorrectionBlock> by_command;
   // Where two axes turn and three reach, which is the rule: inverses of the derivative, row-major, and values that the
   // smallest singular values are surely not below (0: take the general way).
@@ -53,6 +53,11 @@ Eigen::Vector3d vector_at(const std::array<CorrectionBlock::Lanes, N>& lanes, st
 /// Matrix of row-major elements.
 Eigen::Matrix3d matrix_at(const std::array<CorrectionBlock::Lanes, 9>& lanes, std::size_t k);
 
+/// Ends poses whose goals are no numbers.
+void check_goals(CorrectionBlock& block, TargetKind target);
+/// Vectors are read as a whole: numbers where there is no pose.
+void fill_up(CorrectionBlock& block);
+
 /// Newton steps of single poses of a block from what is missing and the derivative by the commands.
 class CorrectionStep {
  public:
@@ -62,8 +67,14 @@ class CorrectionStep {
   /// Rows of the derivative beyond the three of the point: 0, 2 (across the wanted direction) or 3.
   std::size_t orientation_rows() const { return orientation_rows_; }
   bool is_arm() const { return !arm_.empty(); }
+  /// Two axes turn and three reach, or three reach a point alone: ChordSteps serve.
+  bool is_straight() const { return straight_; }
+  const std::vector<std::size_t>& turning() const { return turning_; }
+  const std::vector<std::size_t>& reaching() const { return reaching_; }
   bool is_inverted() const { return is_inverted_; }  ///< as WorkingAxes
 
+  /// Two directions at right angles to the wanted one, which all steps need.
+  void find_across(CorrectionBlock& block) const;
   /// Prepares steps with the derivative CorrectionBlock::by_command[(axis * rows + row) * count + k].
   void take_derivative(CorrectionBlock& block) const;
   /// One step of one pose, or its end.
@@ -102,7 +113,8 @@ class CorrectionStep {
   std::vector<std::size_t> arm_;  // of an arm, instead of both
   bool is_inverted_ = false;
   std::size_t orientation_rows_ = 0;
-  bool usual_ = false;  // two turning and three linear axes, tool direction wanted
+  bool usual_ = false;     // two turning and three linear axes, tool direction wanted
+  bool straight_ = false;  // the same, or three linear axes alone
 };
 
 }  // namespace abbe
