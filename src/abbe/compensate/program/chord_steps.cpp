@@ -242,6 +242,17 @@ namespace chord {
 HWY_EXPORT(StartChord);
 HWY_EXPORT(StepAlongChord);
 
+namespace {
+
+// In the namespace of the kernels: where all is compiled for one processor, Highway accepts no name with a namespace.
+void start_chord(const ChordSteps::Numbers& n, const CorrectionBlock& block, ChordBlock& chord) {
+  HWY_DYNAMIC_DISPATCH(StartChord)(n, block, chord);
+}
+bool step_along_chord(const ChordSteps::Numbers& n, CorrectionBlock& block, ChordBlock& chord) {
+  return HWY_DYNAMIC_DISPATCH(StepAlongChord)(n, block, chord);
+}
+
+}  // namespace
 }  // namespace chord
 
 ChordSteps::ChordSteps(const Machine& machine, const CorrectionOptions& options,
@@ -277,11 +288,11 @@ void ChordSteps::start(const CorrectionBlock& block, ChordBlock& chord) const {
   for (std::size_t k = 0; k < kCorrectionBlock; ++k) {
     chord.left[k] = k < block.count && block.active[k] != 0 ? 1 : 0;
   }
-  HWY_DYNAMIC_DISPATCH(chord::StartChord)(numbers_, block, chord);
+  chord::start_chord(numbers_, block, chord);
 }
 
 bool ChordSteps::step(CorrectionBlock& block, ChordBlock& chord) const {
-  return HWY_DYNAMIC_DISPATCH(chord::StepAlongChord)(numbers_, block, chord);
+  return chord::step_along_chord(numbers_, block, chord);
 }
 
 }  // namespace abbe
