@@ -35,12 +35,12 @@ struct NumberedWork {
   bool in_ranges = false;
 
   /// Fingerprint of everything that the results depend on: equal ones may be mixed.
-  std::function<std::uint64_t()> fingerprint;
-  std::function<void(std::size_t block)> compute;
+  std::function<std::uint64_t()> fingerprint{};
+  std::function<void(std::size_t block)> compute{};
   /// Appends the results of a block that has been computed.
-  std::function<void(std::size_t block, std::vector<std::byte>& bytes)> pack;
+  std::function<void(std::size_t block, std::vector<std::byte>& bytes)> pack{};
   /// Puts results into their place. @throws WorkError if these are none of this block
-  std::function<void(std::size_t block, std::span<const std::byte> bytes)> unpack;
+  std::function<void(std::size_t block, std::span<const std::byte> bytes)> unpack{};
 
   std::vector<std::uint8_t> is_there{};  ///< [blocks] whose results are in their place already; empty: none
   /// Called once for every other block when its results are in their place, one call at a time but from any thread.

@@ -43,8 +43,8 @@ struct RegistrationPass {
   std::size_t points = 0;
   std::span<WeightedSums> sums;         ///< [blocks]
   std::span<BlockDistances> distances;  ///< [blocks]
-  std::function<void(std::size_t block)> compute;
-  std::function<std::uint64_t()> fingerprint;  ///< of everything that they depend on
+  std::function<void(std::size_t block)> compute{};
+  std::function<std::uint64_t()> fingerprint{};  ///< of everything that they depend on
 };
 
 /// Every process has all sums and distances afterwards, in their places. Few points are not shared: sending would take
