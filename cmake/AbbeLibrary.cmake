@@ -4,8 +4,8 @@
 # One static library per folder of src/abbe. Its public headers are in include/abbe and are installed; those in src/abbe are
 # for the library itself and for tests. DEPENDS names other folders; TESTS are the unit tests that stand beside the
 # sources, built into one program per folder. ALONE are sources or tests that cannot share a unit, FAST
-# the sources that take the time of users. COMPUTES_LITTLE and TESTS_COMPUTE_LITTLE: quick builds do not optimise the library
-# (but for FAST), or its tests (cmake/AbbeUnits.cmake).
+# the sources that take the time of users. COMPUTES_LITTLE: quick builds optimise FAST alone; TESTS_COMPUTE_LITTLE: the tests
+# are not optimised (cmake/AbbeUnits.cmake).
 include(AbbeUnits)
 include(AbbeFlags)
 include(AbbeDiscover)

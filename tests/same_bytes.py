@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Whether two builds of the command give the same bytes: for changes that must not change any result.
 
-    tests/same_bytes.py OLD NEW          paths of two `abbe` commands
-    tests/same_bytes.py --no-pdf OLD NEW      without what is printed, where one of them finds no browser
+    tests/same_bytes.py OLD NEW             paths of two `abbe` commands
+    tests/same_bytes.py --no-pdf OLD NEW    without printing to PDF, where one of them finds no browser
 
 Runs the examples of the help texts, those of MORE, the studies of examples/ and the published studies, each in a fresh
 copy of the repository's data, and compares exit code, standard output, standard error and all files. If anything

@@ -107,7 +107,7 @@ struct TargetArrays {
 /// Axis commands that bring the ACTUAL tool of a machine with errors to where it is wanted.
 ///
 /// Newton's method on the exact model (ChainPlan), from commands nearby; the derivative by the commands is the nominal
-/// one, and the actual one where that does not serve. Rotary axes take the orientation error, within
+/// one, or the actual one where that does not serve. Rotary axes take the orientation error, within
 /// a stated turn; linear axes (or the rotary axis of a polar machine) then take the point exactly. The axes of a
 /// jointed arm take both together, near a singularity the point first. Which axes work is decided as in
 /// InverseKinematics; all others keep their command.

@@ -30,8 +30,8 @@ struct NumberedWork {
   bool is_followed = false;  ///< more such work follows, so nobody knows how long all of it takes
   bool for_all = false;      ///< every process goes on with the results; else the first one alone has them all
   bool is_kept = true;       ///< results are worth a file; else they are computed again after a kill
-  /// A process keeps something of its blocks that makes them quicker in the next work with as many: each one begins in
-  /// a range of its own.
+  /// Each process begins in a range of its own, the same in all work with as many blocks: it keeps something of its
+  /// blocks that makes them quicker the next time.
   bool in_ranges = false;
 
   /// Fingerprint of everything that the results depend on: equal ones may be mixed.

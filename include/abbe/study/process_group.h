@@ -18,7 +18,7 @@ class ProcessGroup {
   /// Shares the blocks out. Every process calls it with the same work. What is there already, and
   /// NumberedWork::finished, count in the first one.
   virtual void work(const NumberedWork& work) = 0;
-  /// Of computations that every process does in step with the others.
+  /// For computations that every process makes in step with the others.
   virtual WorkInStep in_step() = 0;
 };
 

@@ -29,7 +29,7 @@ class SharedWork {
   Summation summation(const Study& study) const;
   /// As RunOptions::work. Not to be used after this object has ended.
   WorkDriver driver() const;
-  /// Of a job that shares its numbered work and its work in step. Not to be used after this object has ended.
+  /// Options of a job that shares its numbered work and its work in step. Not to be used after this object has ended.
   JobOptions job(std::function<void(std::size_t done, std::size_t total)> progress) const;
   /// The output is whole: kept blocks go.
   void done();

@@ -7,7 +7,7 @@
 
 namespace abbe {
 
-/// What ChordSteps keeps of a block: rows of the inverse of the derivative.
+/// What ChordSteps keeps of a block of poses: rows of the inverse of the derivative, as the workpiece sees them.
 struct ChordBlock {
   using Lanes = CorrectionBlock::Lanes;
   alignas(128) Lanes turn[2][3];  ///< times the rotation vector that is missing: turns of the turning axes
@@ -21,9 +21,9 @@ struct ChordBlock {
 /// came.
 ///
 /// It differs from the actual one by about the size of the errors (1e-4), so that each step gains nearly four digits,
-/// for a small part of what the actual derivative costs. Only for poses that are far from singularities and whose
-/// residuals become smaller by a factor at each step; all others are left to CorrectionStep. A pose is reached as
-/// there: what is missing is evaluated with all errors.
+/// for a small part of what the actual derivative costs (a chord method: Ortega and Rheinboldt 1970, 10.2.1). It serves
+/// poses that are far from singularities and whose residuals become smaller by a factor at each step; all others are
+/// left to CorrectionStep. As there, what is missing of a pose is evaluated with all errors.
 class ChordSteps {
  public:
   /// @param turning   two rotary axes that take the direction of the tool, or none
@@ -31,7 +31,7 @@ class ChordSteps {
   ChordSteps(const Machine& machine, const CorrectionOptions& options, const std::vector<std::size_t>& turning,
              const std::vector<std::size_t>& reaching);
 
-  /// Takes the derivative at the positions of the block, which stands evaluated, and marks its active poses.
+  /// Takes the derivative at the positions of the block, which has been evaluated there, and marks its active poses.
   void start(const CorrectionBlock& block, ChordBlock& chord) const;
   /// A step of all poses that are not reached; residuals of all.
   /// @returns whether positions have changed, so that the block has to be evaluated

@@ -14,10 +14,11 @@ namespace abbe {
 class PlanningSpace;
 struct PlanningOptions;
 
-/// Of everything that a choice depends on. All rows of the candidates have a part in the seen directions.
+/// Fingerprint of everything that a choice depends on. All rows of the candidates have a part in the seen directions.
 std::uint64_t fingerprint_of_choosing(const PlanningSpace& space, const PlanningOptions& options);
 
-/// Every process keeps every so many of the blocks, so that neighbours, which are alike, do not burden one of them.
+/// Blocks are dealt out to the processes in turn, so that neighbouring blocks, which are alike, do not burden one of
+/// them.
 class PlanShares {
  public:
   PlanShares() = default;  ///< one process
