@@ -28,7 +28,7 @@ void BallProbing::add_to(Subcommand* command, const bool* dry_run) {
   };
   length("--tip-radius-mm", tip_radius_mm_, "Radius of the stylus tip, whose centre is the functional point");
   length("--pre-touch-mm", before_mm_, "Distance from the tip to the ball where a touch begins");
-  length("--over-travel-mm", beyond_mm_, "How far behind the ball's surface the control gives up");
+  length("--over-travel-mm", beyond_mm_, "Distance beyond the surface of the ball at which the control gives up");
   length("--probing-feed-mm-per-min", feed_mm_per_min_, "Feed of a touch");
   command->add_option("--touches-per-ball", touches_, "One along the tool, the others around it")
       ->check(in_range(4, 99))
@@ -41,7 +41,7 @@ void BallProbing::add_to(Subcommand* command, const bool* dry_run) {
       ->group(group);
   command
       ->add_output_file("--touches", touches_file_,
-                        "Touches to write (*.csv), with which abbe import turns the log into readings", dry_run)
+                        "Touches to write (*.csv); abbe import needs them to turn the log into readings", dry_run)
       ->needs("--probe-ball-mm")
       ->group(group);
 }

@@ -43,7 +43,7 @@ void add_check_command(CommandLine& line) {
       "examples/aguado/results/aguado/errors.toml\n"
       "  abbe check examples/aguado/aguado.study.toml\n"
       "  abbe check examples/parts/wedge.stl --unit mm\n"
-      "Of a study, the readings are read and compared with the nominal machine; nothing is identified.\n"
+      "The readings of a study are compared with the nominal machine; nothing is identified.\n"
       "A frozen compensation (abbe compensate freeze) is refused here as a controller would refuse it.\n"
       "Exit code 1: the nominal machine does not explain the readings of a study; the inside and outside of a mesh\n"
       "cannot be told apart everywhere (turned or branching edges, duplicate triangles, inside out); or faces were\n"

@@ -24,7 +24,7 @@ ColumnMapping ColumnOptions::mapping() const {
 void add_columns(Subcommand* command, ColumnOptions& options, const std::string& example) {
   command
       ->add_option("--column", options.columns,
-                   "Column of a CSV file that has another name: NAME_unit=COLUMN, such as " + example + "; repeatable")
+                   "Column of a CSV file with a different name: NAME_unit=COLUMN, such as " + example + "; repeatable")
       ->expected(1)
       ->take_all();
   command->add_option("--ignore", options.ignore, "Column of a CSV file that is not read; repeatable")

@@ -10,9 +10,9 @@ CommandLine::CommandLine()
       "Examples:\n"
       "  abbe run examples/aguado/aguado.study.toml     the whole job, from readings to the report\n"
       "  abbe check --machine examples/machines/trunnion-mill.machine.toml\n"
-      "  abbe reproduce wang                            a published study, recomputed\n\n"
-      "A file that is read may be -, standard input; one of them at most. Outputs that exist are kept without "
-      "--force.\n"
+      "  abbe reproduce wang                            a published study, recomputed\n"
+      "\n"
+      "An input file can be -, standard input, once per call. Existing outputs are replaced only with --force.\n"
       "Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 internal error;\n"
       "interrupted: 130 by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.");
   program.set_version_flag("-V,--version", std::string("abbe ") + version_text());

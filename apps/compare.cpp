@@ -61,8 +61,10 @@ void add_compare_command(CommandLine& line) {
       "examples/machines/three-axis-mill.machine.toml\n"
       "  abbe compare examples/compare/march.errors.toml examples/compare/june.errors.toml "
       "examples/compare/october.errors.toml --machine examples/machines/three-axis-mill.machine.toml --tolerance "
-      "V_max_C_A_um=20 -o results/compare\n\n"
-      "Campaigns in the order of time. Each is compared with the first, and with the one before. Exit code 1 if\n"
+      "V_max_C_A_um=20 -o results/compare\n"
+      "\n"
+      "Campaigns are given in chronological order. Each is compared with the first, and with the one before. Exit code "
+      "1 if\n"
       "nothing can be compared, the significance of a change is not known, or a tolerance is exceeded. Method and\n"
       "figures: docs/compare.md.");
   app->add_input_file("campaigns", command->campaigns,
@@ -70,7 +72,7 @@ void add_compare_command(CommandLine& line) {
       ->required();
   add_machine(*app, command->machine, "Machine file of all campaigns (default: machine.toml of each results folder)");
   app->add_option("--level-percent", command->level_percent,
-                  "Significance level: probability that any error of a pair is called changed if none has")
+                  "Significance level: probability that any error of a pair is reported as changed if none has")
       ->check(in_range(1e-6, 50.0))
       ->capture_default_str();
   app->add_output_folder("-o,--output", command->output,

@@ -55,10 +55,11 @@ void add_deviate_command(CommandLine& line) {
       "examples/scan/bracket-transform.csv --largest-mm 0.3 --faces-deg 30 --tolerance p95_um=60 -o "
       "results/deviation");
   add_scan_files(app, command->files);
-  app->add_input_file("--transform", command->request.transform_file,
-                      "Pose of the scan on the part: transform.csv of abbe register (default: as it stands)");
+  app->add_input_file(
+      "--transform", command->request.transform_file,
+      "Pose of the scan on the part: transform.csv of abbe register (default: the scan is in the frame of the part)");
   add_number(app, "--largest-mm", Quantity::length, "mm", {0, 1e9}, command->request.largest_mm,
-             "Points farther away are left out (default 0: all count)");
+             "Leave out points farther from the part than this (default 0: none)");
   add_number(app, "--lower-um", Quantity::length, "um", {-1e9, 1e9}, command->lower_mm,
              "With --upper-um: a band; reports the share of points within it");
   add_number(app, "--upper-um", Quantity::length, "um", {-1e9, 1e9}, command->upper_mm, "Upper end of the band");
@@ -76,8 +77,9 @@ void add_deviate_command(CommandLine& line) {
                   "Largest permitted amount of a figure, such as maximum_um=50; repeatable. Exit code 1 if "
                   "exceeded")
       ->allow_extra_args(false);
-  app->add_option("--stream-above", command->streaming.above,
-                  "Points above which a scan is read in blocks (docs/scale.md), 27 bytes of a text each");
+  app->add_option(
+      "--stream-above", command->streaming.above,
+      "Number of points above which a scan is read in blocks (docs/scale.md); 27 bytes of a text file count as one");
   app->add_flag("--json", command->options.json, "Print JSON for programs");
   app->callback([&line, command] { line.share([command](ProcessGroup* all) { return run_deviate(*command, all); }); });
 }

@@ -36,15 +36,16 @@ ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine
 void add_states(Subcommand& command, std::vector<std::string>& states) {
   command
       .add_option("--state", states,
-                  "NAME_unit=value, such as ambient_degC=26.5: take the errors as they are at this value of a measured "
-                  "or lag state; repeatable")
+                  "NAME_unit=value, such as ambient_degC=26.5: use the errors at this value of a measured or lag "
+                  "state; repeatable")
       ->allow_extra_args(false);
 }
 
 void add_workpiece(Subcommand& command, WorkpieceOptions& workpiece) {
   for (const auto& one : workpiece_numbers()) command.add_option(one.option, workpiece.*one.value, one.words);
   command.add_option("--workpiece-state", workpiece.state, "State of the machine file that is its temperature, degC");
-  const char* const fixed = "Point of the workpiece that stays where it is, mm, workpiece frame (default 0 0 0)";
+  const char* const fixed =
+      "Point of the workpiece that does not move as it expands, mm, workpiece frame (default 0 0 0)";
   command.add_option("--workpiece-fixed-mm", workpiece.fixed_mm, fixed)->expected(3);
 }
 

@@ -50,7 +50,7 @@ void Subcommand::take_inputs(std::vector<std::string>& options) {
 void Subcommand::add_force() {
   if (has_force_) return;
   has_force_ = true;
-  add_flag("--force", force_, "Replace files that exist");
+  add_flag("--force", force_, "Replace existing files");
 }
 
 Option* Subcommand::add_output(const std::string& name, std::string& value, const std::string& description,

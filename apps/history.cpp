@@ -123,7 +123,7 @@ void add_history_command(CommandLine& line) {
       ->required();
   add_machine(*add, command->machine, "Machine file of all campaigns (default: machine.toml of each results folder)");
 
-  Subcommand* list = add_part(*history, line, command, "list", "List the campaigns in the order of time",
+  Subcommand* list = add_part(*history, line, command, "list", "List the campaigns in chronological order",
                               "  abbe history list mill.history", run_list);
   list->add_flag("--json", command->json, "Print JSON for programs");
 

@@ -33,7 +33,7 @@ void add_identify_command(CommandLine& line) {
   command->add_flag("--parameters", options->parameters, "List every parameter with its standard uncertainty");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->add_flag("--accept-misfit", options->accept_misfit,
-                    "End with exit code 0 and usable errors although the result is not to be trusted");
+                    "Exit with code 0 and allow the errors to be used, even if the result is not to be trusted");
   command->callback([&line, options] {
     line.share([options](ProcessGroup* processes) -> int {
       const Study study = read_study(options->study);

@@ -135,13 +135,14 @@ void add_import_command(CommandLine& line) {
       "Exit code 1: something is uncertain and the table is not written; the text says what. docs/import.md.");
   app->add_input_file("file", command->file, "Table or file of an instrument, as text, also compressed by gzip")
       ->required();
-  app->add_option("--as", command->kind,
-                  "What it becomes: points, tracker, positioning, circular or temperatures (default: by its columns)")
+  app->add_option(
+         "--as", command->kind,
+         "Kind of the result: points, tracker, positioning, circular or temperatures (default: by its columns)")
       ->check(one_of(import_kind_names()));
-  add_machine(*app, command->machine, "Machine whose commands the table of a tracker has (*.machine.toml)");
+  add_machine(*app, command->machine, "Machine whose commands are in the table of a tracker (*.machine.toml)");
   app->add_input_file("--mapping", command->mapping, "Mapping to use: nothing is proposed (*.import.toml)");
   app->add_option("--format", command->format,
-                  "Form of the file (default: by its contents): a table, or what an instrument or a control writes")
+                  "Format of the file (default: by its contents): a table, or a file of an instrument or a control")
       ->check(one_of(import_format_names()))
       ->excludes("--mapping");
   app->add_option("--encoding", command->encoding,
@@ -159,19 +160,19 @@ void add_import_command(CommandLine& line) {
   app->add_option("--angle-unit", command->angle_unit, "Unit of angles that state none: deg, rad, gon, ...")
       ->check(one_of(import_unit_names(Quantity::angle)))
       ->excludes("--mapping");
-  app->add_option("--azimuth", command->azimuth, "Sense in which azimuths count, seen from above")
+  app->add_option("--azimuth", command->azimuth, "Sense of azimuths, seen from above")
       ->check(one_of({"clockwise", "anticlockwise"}))
       ->excludes("--mapping");
-  app->add_option("--vertical", command->vertical, "Where vertical angles count from")
+  app->add_option("--vertical", command->vertical, "Zero of vertical angles")
       ->check(one_of({"zenith", "horizontal"}))
       ->excludes("--mapping");
   app->add_option("--mirrored", command->mirrored, "Coordinate of a left-handed frame that is to be reversed")
       ->check(one_of({"x", "y", "z"}))
       ->excludes("--mapping");
-  app->add_flag("--accept-uncertain", command->accept_uncertain, "Take what is proposed, also where it is uncertain")
+  app->add_flag("--accept-uncertain", command->accept_uncertain, "Accept the proposal even where it is uncertain")
       ->excludes("--mapping");
   app->add_output_file("--write-mapping", command->written_mapping, "Mapping to write (*.import.toml)");
-  app->add_output_file("-o,--output", command->output, "CSV to write; default: only say what was found");
+  app->add_output_file("-o,--output", command->output, "CSV to write (default: only report what was found)");
   app->add_flag("--json", command->json, "Print JSON for programs");
   Option* const touches = app->add_input_file(
       "--touches", command->touches,

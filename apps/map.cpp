@@ -94,7 +94,7 @@ void add_map_command(CommandLine& line) {
       ->add_input_file("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid")
       ->excludes("--grid");
   command->add_flag("--keep-datum", options->keep_datum,
-                    "Keep the workpiece datum where it is: gives displacements, not the volumetric error");
+                    "Do not fit the workpiece datum: gives displacements, not the volumetric error");
   command
       ->add_flag("--fit-datum", options->fit_datum,
                  "Remove the best-fit rigid motion of the workpiece (done unless --keep-datum is given)")

@@ -112,10 +112,9 @@ void add_path_command(CommandLine& line) {
   add_errors(*command, options->errors, "Identified errors (*.errors.toml)");
   command->add_input_file("--placement", options->placement, "Where the workpiece is clamped (*.placement.toml)");
   command->add_option("--hold", options->hold, "Axis kept at a command, AXIS_unit=position; repeatable");
-  command->add_option(
-      "--start", options->start,
-      "Where an axis stands before the path, AXIS_unit=position; repeatable. The nearest branch is taken; "
-      "axes that are not named may stand anywhere");
+  command->add_option("--start", options->start,
+                      "Position of an axis before the path, AXIS_unit=position; repeatable. The nearest branch is "
+                      "taken; axes that are not named may be anywhere");
   command->add_option("--feed-mm-per-min", options->feed_mm_per_min, "Feed where the curve has none")
       ->check(positive_number());
   command

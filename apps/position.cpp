@@ -71,7 +71,8 @@ void add_position_command(CommandLine& line) {
       "  abbe position examples/laser_engraver/scanner.positioning.toml -o part.placement.toml\n\n"
       "The file names a CSV with target, x_mm, y_mm, z_mm in the scanner's frame; docs/workpiece-position.md.\n"
       "Exit code 1: the scans do not determine the position; the message says why.");
-  app->add_input_file("file", command->file, "Scans and what they show (*.positioning.toml)")->required();
+  app->add_input_file("file", command->file, "Positioning file (*.positioning.toml): the scans and what they show")
+      ->required();
   app->add_output_file("-o,--output", command->output, "Placement to write (*.placement.toml), as abbe path takes it");
   app->add_option("--maps", command->maps,
                   "Direction in which the matrix of the written placement maps: table-to-workpiece (default) or "

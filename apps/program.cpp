@@ -186,28 +186,28 @@ void add_program_command(CommandLine& line) {
                    "Decimals of mm and degrees in the program (default: 6; heidenhain and siemens 4, fanuc 3)")
       ->check(in_range(1, 9));
   command->add_flag("--machine-coordinates", options->machine_coordinates,
-                    "Moves past all zero offsets (G53, SUPA, M91), where the zero of the machine file is that of the "
-                    "machine");
+                    "Move in machine coordinates, without zero offsets (G53, SUPA, M91); the zero of the machine file "
+                    "must be that of the machine");
   command->add_option("--feed-mm-per-min", options->feed_mm_per_min, "Move at this feed (default: rapid traverse)")
       ->check(positive_number());
   const auto seconds = [&](const char* name, double& value, const char* words) {
     command->add_option(name, value, words)->check(in_range(0.0, 3600.0))->capture_default_str();
   };
-  seconds("--dwell-s", options->dwell_s, "Standing still before the trigger");
-  seconds("--reading-s", options->reading_s, "Standing still after the trigger, while the instrument reads");
-  command->add_option("--trigger", options->trigger, "What tells the instrument that the machine stands")
+  seconds("--dwell-s", options->dwell_s, "Dwell before the trigger");
+  seconds("--reading-s", options->reading_s, "Dwell after the trigger, while the instrument reads");
+  command->add_option("--trigger", options->trigger, "Signal that tells the instrument that the machine has stopped")
       ->check(one_of(nc_trigger_names()))
       ->capture_default_str();
   command->add_option("--trigger-number", options->trigger_number, "Number of the M function or of the output")
       ->check(in_range(0, 99999));
-  seconds("--pulse-s", options->pulse_s, "How long the output is on");
+  seconds("--pulse-s", options->pulse_s, "Duration of the pulse on the output");
   command->add_option("--stop-at", options->stop_at, "Stop for the operator at every station, every set-up, or nowhere")
       ->check(one_of(measurement_section_names()))
       ->capture_default_str();
   command->add_flag("--shorten", options->shorten,
-                    "Readings between two stops in an order of short travel (default: that of the file)");
+                    "Order the readings between two stops for short travel (default: order of the file)");
   command->add_option("--start", options->start,
-                      "Where an axis stands before the program, AXIS_unit=position; repeatable, for all axes");
+                      "Position of an axis before the program, AXIS_unit=position; repeatable, for all axes");
   command->add_option("--obstacle-box-mm", options->boxes,
                       "Box that the tool must not touch, ON=X0,Y0,Z0,X1,Y1,Z1, where ON is base (machine frame), table "
                       "(workpiece frame) or an axis (machine frame, all axes at zero); repeatable");
@@ -220,11 +220,13 @@ void add_program_command(CommandLine& line) {
   length("--tool-radius-mm", options->tool.radius, "Radius kept clear about the tool's line");
   length("--tool-length-mm", options->tool.length,
          "Length of the tool's line from the functional point towards the spindle");
-  length("--clearance-mm", options->clearance_mm, "Retract along the tool by this where the straight way is not clear");
-  command->add_option(
-      "--clear-at", options->clear_at,
-      "Position at which an axis is clear of everything, AXIS_unit=position; tried as well; repeatable");
-  command->add_option("--linear-speed-mm-per-s", options->linear_speed, "Rapid traverse of linear axes, for the time")
+  length("--clearance-mm", options->clearance_mm,
+         "Retract along the tool by this distance where the direct way is not clear");
+  command->add_option("--clear-at", options->clear_at,
+                      "Position at which an axis is clear of all obstacles, AXIS_unit=position; tried too; repeatable");
+  command
+      ->add_option("--linear-speed-mm-per-s", options->linear_speed,
+                   "Rapid traverse of linear axes, to estimate the time")
       ->check(positive_number())
       ->capture_default_str();
   command->add_option("--rotary-speed-deg-per-s", options->rotary_speed_deg, "The same of rotary axes")

@@ -72,7 +72,7 @@ int run_register(const RegisterCommand& command, ProcessGroup* processes) {
 void add_register_command(CommandLine& line) {
   auto command = std::make_shared<RegisterCommand>();
   Subcommand* app = line.add(
-      "register", "Fit a scan onto its part: pose with uncertainty, from any start",
+      "register", "Fit a scan onto its part, from any start: pose with uncertainty",
       "  abbe register examples/scan/bracket-scan.csv examples/scan/bracket.stl -o results/bracket\n"
       "  abbe register examples/scan/bracket-scan.csv examples/scan/bracket.stl --loss tukey --noise-um 5 "
       "--uncertainty\n"
@@ -80,8 +80,9 @@ void add_register_command(CommandLine& line) {
       "Exit code 1: the scan does not fix one pose (ambiguous, undetermined), or none was found; the output says "
       "which.");
   add_scan_files(app, command->files);
-  app->add_input_file("--start", command->start,
-                      "Where to begin: global (any pose, the default), identity, or a transform file (transform.csv)");
+  app->add_input_file(
+      "--start", command->start,
+      "Start of the search: global (any pose, the default), identity, or a transform file (transform.csv)");
   app->add_option("--loss", command->loss,
                   "welsch, tukey: robust weights with steps to tangent planes; adf (default): Welsch weights with "
                   "second-order steps (adaptive distance function)")

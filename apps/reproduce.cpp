@@ -12,7 +12,7 @@ void add_reproduce_command(CommandLine& line) { add_reproduce_command(line, star
 void add_reproduce_command(CommandLine& line, const std::function<int(const ReproduceOptions&)>& run) {
   auto options = std::make_shared<ReproduceOptions>();
   Subcommand* command = line.add(
-      "reproduce", "Print a paper's figures beside ours, and where its equations are wrong",
+      "reproduce", "Recompute a published study: its figures beside ours, and where its equations are wrong",
       "  abbe reproduce wang\n"
       "  abbe reproduce wang --grids examples/wang/grids\n"
       "  abbe reproduce aguado -o results/aguado_paper\n\n"

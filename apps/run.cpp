@@ -37,14 +37,14 @@ void add_run_command(CommandLine& line) {
                     "Print every identified value, outlier and direction that the readings do not determine");
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");
   command->add_flag("--pdf", options->pdf,
-                    "Write the customer report as PDF, too; [report] of the study states its facts");
+                    "Also write the customer report as PDF; [report] of the study states its facts");
   command->add_output_file("--qif", options->qif,
                            "QIF 3.0 results to write, with the figures of the customer report; *.qif");
   command->add_option("--before", options->before,
                       "Results of the same machine before its correction, for the customer report: a results folder "
                       "of abbe run, or an errors file");
   command->add_flag("--accept-misfit", options->accept_misfit,
-                    "End with exit code 0 and usable errors although the result is not to be trusted");
+                    "Exit with code 0 and allow the errors to be used, even if the result is not to be trusted");
   command->callback([&line, options] {
     line.share([options](ProcessGroup* processes) -> int {
       Study study = read_study(options->study);

@@ -27,7 +27,7 @@ void StepReading::add_to(Subcommand* command) {
           ->check(positive_number())
           ->capture_default_str(),
       command->add_flag("--leave-out-faces", options_.leave_out_faces,
-                        "STEP: go on without faces that cannot be read, and name them (default: refuse the file)")};
+                        "STEP: continue without faces that cannot be read, and name them (default: refuse the file)")};
 }
 
 MeshFile StepReading::read_with_progress(const std::filesystem::path& mesh, MeshFileOptions options) const {

@@ -12,7 +12,7 @@ void tell_distrust(const Study& study, const StudyResult& result) {
   for (const Distrust& reason : result.distrusted) tell("abbe: not to be trusted: {}\n", reason.text);
   if (result.distrusted.empty()) return;
   tell("abbe: {}\n", result.misfit_accepted
-                         ? "accepted by --accept-misfit, which its errors file says"
+                         ? "accepted by --accept-misfit, as its errors file says"
                          : "its errors are marked and abbe compensate refuses them; once the cause is known and "
                            "harmless, --accept-misfit accepts the result");
 }

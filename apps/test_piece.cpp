@@ -63,14 +63,13 @@ void add_test_piece_command(CommandLine& line) {
                "what is measured on the pieces.");
   command->require_subcommand(1);
   auto options = std::make_shared<TestPieceOptions>();
-  Subcommand* cone =
-      command->add_subcommand("cone-frustum", "Inclined cone frustum (in the manner of ISO 10791-7, M3)");
+  Subcommand* cone = command->add_subcommand("cone-frustum", "Inclined cone frustum (similar to ISO 10791-7, M3)");
   add_common(*cone, *options);
   add_cone_frustum_sizes(*cone, options->sizes);
   cone->callback([&line, options] {
     line.run = [options] { return write_piece(*options, cone_frustum_of(options->sizes), &cone_frustum_csv); };
   });
-  Subcommand* s = command->add_subcommand("s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)");
+  Subcommand* s = command->add_subcommand("s-shape", "Wall in the shape of an S (similar to ISO 10791-7, M4)");
   add_common(*s, *options);
   add_s_shape_sizes(*s, options->sizes);
   s->callback([&line, options] {

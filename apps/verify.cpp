@@ -144,7 +144,7 @@ void add_verify_command(CommandLine& line) {
   VerifyOptions& options = asked->options;
   Subcommand* command = line.add(
       "verify",
-      "Check what a compensation leaves: of new readings, or at poses and on test pieces of a simulated machine",
+      "Check what a compensation leaves: with new readings, or at poses and on test pieces of a simulated machine",
       "  abbe verify examples/aguado/results/aguado\n"
       "  abbe verify --machine examples/machines/trunnion-mill.machine.toml --errors "
       "examples/compensate/trunnion.errors.toml --truth examples/verify/truth.errors.toml -o page.html "
@@ -152,7 +152,7 @@ void add_verify_command(CommandLine& line) {
       "examples/verify/s-before.csv --after examples/verify/s-after.csv\n"
       "  abbe verify --errors examples/compensate/trunnion.errors.toml --readings "
       "examples/verify/second-tracker.study.toml\n\n"
-      "With --readings, the readings of a study take the place of a simulated truth: its set-ups are fitted to them,\n"
+      "With --readings, the readings of a study replace the simulated truth: its set-ups are fitted to them,\n"
       "and what is left is compared with the uncertainties. The study states the machine.\n"
       "Test pieces come last, each with the traces of both runs and its sizes as in abbe test-piece. A trace "
       "is\n"
@@ -165,7 +165,7 @@ void add_verify_command(CommandLine& line) {
   add_errors(*command, options.files.errors, "Identified errors (default: errors.toml of the results)");
   command->add_input_file("--truth", options.files.truth, "True errors (default: truth.errors.toml of the results)");
   command->add_input_file("--readings", options.readings,
-                          "Study with measured readings that took no part in the identification (*.study.toml)");
+                          "Study with measured readings that were not used in the identification (*.study.toml)");
   command->add_option("--poses", options.poses, "Number of random poses")
       ->check(in_range(10, 10000))
       ->capture_default_str();
@@ -174,17 +174,16 @@ void add_verify_command(CommandLine& line) {
       ->add_option("--range", options.ranges,
                    "AXIS_unit=from:to or AXIS_unit=position; repeatable (default: where the errors are known)")
       ->allow_extra_args(false);
-  Option* const reduction = command->add_option(
-      "--least-reduction", asked->reduction,
-      "Exit code 1 unless the mean volumetric error (of --readings: the mean residual) becomes this "
-      "many times smaller");
-  Option* const ratio =
-      command->add_option("--largest-ratio", asked->ratio,
-                          "Exit code 1 if the volumetric error (root mean square) is more than this many times its "
-                          "predicted standard uncertainty; of --readings: what is left, than what the uncertainties "
-                          "explain");
+  Option* const reduction = command->add_option("--least-reduction", asked->reduction,
+                                                "Exit code 1 unless the mean volumetric error (with --readings: the "
+                                                "mean residual) becomes this many times smaller");
+  Option* const ratio = command->add_option(
+      "--largest-ratio", asked->ratio,
+      "Exit code 1 if the volumetric error (root mean square) is more than this many times its predicted standard "
+      "uncertainty; with --readings: if what is left is more than this many times what the uncertainties explain");
   command
-      ->add_option("--reach-mm", options.reach_mm, "A sample farther from the test piece's tool path does not cut it")
+      ->add_option("--reach-mm", options.reach_mm,
+                   "Samples farther than this from the tool path of the test piece do not cut it")
       ->check(in_range(0.01, 10.0))
       ->capture_default_str();
   command->add_flag("--accept-uncovered", options.accept_uncovered, kAcceptUncoveredWords);
@@ -192,11 +191,11 @@ void add_verify_command(CommandLine& line) {
   command->add_flag("--json", options.json, "Print JSON for programs");
   command->require_subcommand(0, 2);
   Subcommand* const cone =
-      add_piece(*command, "cone-frustum", "Inclined cone frustum (in the manner of ISO 10791-7, M3)",
+      add_piece(*command, "cone-frustum", "Inclined cone frustum (similar to ISO 10791-7, M3)",
                 "--before examples/verify/cone-before.csv --after examples/verify/cone-after.csv", asked->cone);
   add_cone_frustum_sizes(*cone, asked->cone.sizes);
   Subcommand* const s =
-      add_piece(*command, "s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)",
+      add_piece(*command, "s-shape", "Wall in the shape of an S (similar to ISO 10791-7, M4)",
                 "--before examples/verify/s-before.csv --after examples/verify/s-after.csv", asked->s);
   add_s_shape_sizes(*s, asked->s.sizes);
   command->callback([&line, command, asked, reduction, ratio, cone, s] {

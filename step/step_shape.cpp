@@ -160,7 +160,7 @@ std::string StepShape::face_name(const TopoDS_Face& face) const {
 void refuse_faces(const std::vector<std::string>& faces) {
   throw StepRefused(
       (faces.size() == 1 ? "face " : fmt::format("{} faces cannot be read: ", faces.size())) + first_few(faces, "; "),
-      "faces that can be read, or --leave-out-faces to go on without them");
+      "faces that can be read, or --leave-out-faces to continue without them");
 }
 
 StepShape read_step_shape(const std::string& path, bool leave_out_faces, const Handle(TimeLimit) & limit) {

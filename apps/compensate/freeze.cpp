@@ -67,12 +67,13 @@ int run_freeze(const FreezeArguments& arguments) {
 
 void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
   auto arguments = std::make_shared<FreezeArguments>();
-  Subcommand* command =
-      compensate.add_subcommand("freeze", "Write machine and errors to one file that a controller uses in real time");
+  Subcommand* command = compensate.add_subcommand(
+      "freeze", "Write the machine and its errors to one file that a controller uses in real time");
   command->footer(
       "The file is for the C interface abbe/runtime/abbe_runtime.h and for the LinuxCNC module (docs/runtime.md). It "
       "is\n"
-      "tried at thousands of poses before it is written; the printed figures come from there. It does not contain\n"
+      "tested at thousands of poses before it is written; the printed figures come from these tests. It does not "
+      "contain\n"
       "reversal values: the lines for LinuxCNC's own BACKLASH are printed instead. Errors that depend on states\n"
       "(temperatures, loads) are compensated with values that the controller gives in every cycle.\n\n"
       "Example:\n"
@@ -90,14 +91,13 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       ->add_option("--tool-mm", arguments->tool,
                    "Functional point from the gauge point, for calls that give no tool (default: that of the machine)")
       ->expected(3);
-  command->add_option("--tool-length-mm", arguments->lengths, "Tool lengths that are tried; others are flagged")
+  command->add_option("--tool-length-mm", arguments->lengths, "Tool lengths that are tested; others are flagged")
       ->expected(2)
       ->capture_default_str();
-  command->add_option(
-      "--state-range", arguments->state_ranges,
-      "NAME_unit=FROM:TO, such as ambient_degC=15:30: values of a measured state that are compensated; beyond, "
-      "the end is held and then the reference taken (default: what the readings covered; temperatures without "
-      "that: 5 K below to 10 K above the reference)");
+  command->add_option("--state-range", arguments->state_ranges,
+                      "NAME_unit=FROM:TO, such as ambient_degC=15:30: values of a measured state that are compensated; "
+                      "beyond them, the limit is held and then the reference is used (default: what the readings "
+                      "covered; temperatures without that: 5 K below to 10 K above the reference)");
   command->add_option("--limit-um", arguments->limit_um, "Refuse if the tool would be corrected by more than this");
   command
       ->add_option("--largest-turn-deg", arguments->largest_turn_deg,
@@ -109,7 +109,7 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       ->check(one_of({"joints", "workpiece"}))
       ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", arguments->leave_out_factor,
-                      "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
+                      "Leave out errors that are everywhere smaller than this many times their standard uncertainties");
   add_states(*command, arguments->states);
   add_accept_misfit(*command, arguments->accept_misfit);
   command->add_flag("--json", arguments->json, "Print JSON for programs");

@@ -122,13 +122,13 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
   command->add_option("--limit-um", options->limit_um,
                       "Refuse corrections of the functional point above this, um; nothing is written then");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
-                      "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
+                      "Leave out errors that are everywhere smaller than this many times their standard uncertainties");
   command
       ->add_option("--largest-turn-deg", options->largest_turn_deg,
                    "How far rotary axes may turn for a correction near a singularity")
       ->capture_default_str();
   command->add_option("--word", options->words, "Word of an axis in the program: C1=C");
-  command->add_option("--start", options->start, "Where an axis stands when the program begins: X_mm=0, C_deg=30");
+  command->add_option("--start", options->start, "Position of an axis when the program begins: X_mm=0, C_deg=30");
   command->add_input_file("--tool-table", options->tool_table, "Tool table of LinuxCNC, for G43 H");
   command->add_flag("--tool-table-in-inches", options->tool_table_in_inches,
                     "The lengths of the tool table are in inches");

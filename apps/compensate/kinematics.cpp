@@ -85,7 +85,7 @@ void add_compensate_kinematics(Subcommand& compensate, CommandLine& line) {
     }
   }
   Subcommand* const command =
-      compensate.add_subcommand("kinematics", "Write positions and directions of rotary axes as a control takes them");
+      compensate.add_subcommand("kinematics", "Write the positions and directions of rotary axes for a control");
   command->footer(formats +
                   "\nExample:\n"
                   "  abbe compensate kinematics --machine examples/machines/trunnion-mill.machine.toml --errors "
@@ -109,7 +109,7 @@ void add_compensate_kinematics(Subcommand& compensate, CommandLine& line) {
       ->capture_default_str();
   add_states(*command, arguments->states);
   command->add_option("--at", arguments->at,
-                      "Where an axis stands for states that follow from the commands, AXIS_unit=position; repeatable "
+                      "Position of an axis for states that follow from the commands, AXIS_unit=position; repeatable "
                       "(default: middle of its travel)");
   add_accept_misfit(*command, arguments->accept_misfit);
   command->add_flag("--json", arguments->json, "Print JSON for programs");

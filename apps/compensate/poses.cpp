@@ -99,7 +99,7 @@ int run_poses(const PosesCommand& command) {
     return kNegative;
   }
   if (result.not_reached > 0) {
-    tell("abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", result.not_reached,
+    tell("abbe: the tool does not reach {} of {} poses; the column status says where and why\n", result.not_reached,
          result.poses.count());
   }
   return tell_outside(result.at_state, result.not_reached == 0 ? kDone : kNegative);
@@ -124,14 +124,14 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   command->add_input_file("poses", options->poses, "CSV with a column of commands per axis, or a robot program")
       ->required();
   add_machine_and_errors(*command, options->machine, options->errors);
-  command->add_output_file("-o,--output", options->output, "CSV (commands, status, what is left) or program to write",
-                           &options->dry_run);
+  command->add_output_file("-o,--output", options->output,
+                           "CSV (commands, status, remaining errors) or program to write", &options->dry_run);
   command->add_option("--hold", options->hold, "Axis that keeps its commands; repeatable");
   command->add_option("--largest-turn-deg", options->largest_turn_deg,
-                      "How far rotary axes may turn for a correction (default 0.5; of an arm 5)");
+                      "How far rotary axes may turn for a correction (default 0.5; arms: 5)");
   command->add_option("--limit-um", options->limit_um, "Refuse corrections of the functional point above this, um");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
-                      "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
+                      "Leave out errors that are everywhere smaller than this many times their standard uncertainties");
   add_workpiece(*command, options->workpiece);
   command->add_flag("--dry-run", options->dry_run,
                     "Report only: the largest corrections and where they are; write nothing");

@@ -174,17 +174,17 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
       "File to write, or a folder (a name without an extension) if there are several files", &options->dry_run);
   command->add_flag("--dry-run", options->dry_run, "Report only; write no table");
   command->add_option("--at", options->at,
-                      "AXIS_unit=position: where an axis stands while another one moves, or if it is not in the grid "
+                      "AXIS_unit=position: position of an axis while another one moves, or if it is not in the grid "
                       "(default: the middle of its travel)");
   command->add_option("--axis", options->axes, "Write only tables over the position of this axis; repeatable");
   command->add_option("--name", options->names,
                       "AXIS=NAME: the name or number that the control has for an axis; repeatable");
   command->add_option("--interpolation-um", options->interpolation_um,
-                      "Largest error of straight lines between nodes, um (default 0.1; fanuc-3d 1, including the "
+                      "Largest error of linear interpolation between nodes, um (default 0.1; fanuc-3d 1, including the "
                       "rounding of its data)");
   command->add_option("--interpolation-urad", options->interpolation_urad,
                       "The same for rotary axes, urad (default 0.1)");
-  command->add_option("--max-points", options->max_points, "Largest number of nodes per table; of a grid, in all");
+  command->add_option("--max-points", options->max_points, "Largest number of nodes per table; for a grid, in total");
   command->add_option("--positions", options->positions,
                       "Positions per axis, between the nodes, at which the displacement is stated (default 9; 5 with "
                       "more than 3 axes)");
@@ -196,16 +196,16 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
       ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", options->times_uncertainty,
-                      "Leave out tables that nowhere exceed this many of their standard uncertainties");
+                      "Leave out tables that nowhere exceed this many times their standard uncertainties");
   command->add_option("--type", options->type, "linuxcnc: COMP_FILE_TYPE, 0 or 1 (default 1)");
   command->add_option("--first-table", options->first_table, "siemens-cec: index of the first table (default 0)");
   command->add_option("--encoder", options->encoder, "siemens-eec: measuring system, 0 or 1 (default 0)");
   command->add_flag("--negate", options->negate,
                     "siemens-cec, heidenhain, heidenhain-kinematics-comp, fanuc-pitch, fanuc-3d, aerotech-1d, "
-                    "aerotech-2d: write values with the other sign (the sign of the control is not verified)");
+                    "aerotech-2d: write values with the opposite sign (the sign of the control is not verified)");
   command->add_flag("--negate-own", options->negate_own,
-                    "heidenhain-kinematics-comp: the same of the columns of the axes themselves; --negate then turns "
-                    "C1 to C6 and COMPTAB");
+                    "heidenhain-kinematics-comp: the same for the columns of the axes themselves; --negate then "
+                    "reverses C1 to C6 and COMPTAB");
   command->add_option(
       "--detection-unit-um", options->unit_um,
       "fanuc-pitch, fanuc-3d: unit of the data, um, or thousandths of a degree for rotary axes (default 1)");
@@ -215,11 +215,12 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
       "(default: 0, or the end of the travel next to it); repeatable");
   command->add_output_file(
       "--map", options->map,
-      "Map to write of the displacement without tables, with tables and ideal: .csv, .vts or .vtu");
+      "Map to write: displacement without tables, with tables and with ideal compensation; .csv, .vts or .vtu");
   add_workpiece(*command, options->workpiece);
   add_states(*command, options->states);
-  command->add_input_file("--state-over", options->over,
-                          "Also state what the tables leave at the states of a record (CSV: time_s and states)");
+  command->add_input_file(
+      "--state-over", options->over,
+      "Also state the error that remains with the tables at the states of a record (CSV: time_s and states)");
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {

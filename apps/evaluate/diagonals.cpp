@@ -8,7 +8,7 @@ void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line) {
   Subcommand* command = add_evaluation(
       evaluate, "diagonals", "Positioning along body or face diagonals (ISO 230-6)",
       "  diagonal        name of the diagonal, such as +X+Y+Z\n"
-      "  direction       + or -: from which side the target was approached\n"
+      "  direction       + or -: side from which the target was approached\n"
       "  target_mm       distance along the diagonal\n"
       "  deviation_um    actual minus target; or actual_mm\n"
       "  run             optional: number or name of the run",

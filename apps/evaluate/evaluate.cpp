@@ -64,7 +64,7 @@ void add_customer_report_options(Subcommand& command, EvaluationOptions& options
   command
       .add_input_file(
           "--facts", options.facts,
-          "Facts of both: a TOML file with the table [report] (customer, machine, tolerances, language, ...)")
+          "Facts for both: a TOML file with the table [report] (customer, machine, tolerances, language, ...)")
       ->group("Customer report");
   command.add_input_file("--before", options.before, "Readings before a correction, for figures before and after")
       ->group("Customer report");

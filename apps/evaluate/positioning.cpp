@@ -31,7 +31,7 @@ void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<PositioningCommand>();
   Subcommand* app = add_evaluation(
       evaluate, "positioning", "Accuracy and repeatability of positioning of a linear or rotary axis (ISO 230-2)",
-      "  direction       + or -: from which side the target was approached\n"
+      "  direction       + or -: side from which the target was approached\n"
       "  target_mm       target position; target_deg for a rotary axis\n"
       "  deviation_um    actual minus target; or actual_mm. deviation_arcsec or actual_deg for a rotary axis\n"
       "  run             optional: number or name of the run\n"

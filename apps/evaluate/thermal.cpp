@@ -50,13 +50,13 @@ void add_evaluate_thermal(Subcommand& evaluate, CommandLine& line) {
       evaluate, line, "axis-distortion", "Thermal distortion by a moving linear axis (ISO 230-3)",
       "  target_mm       position at which the axis was read\n"
       "  deviation_um    actual minus target; or actual_mm\n"
-      "  direction       optional, + or -: from which side the target was approached\n" +
+      "  direction       optional, + or -: side from which the target was approached\n" +
           kSensorColumns,
       "evaluate/axis_warming.csv --tolerance d_L_um=20", axis_distortion_numbers(),
       [](const auto& file, const auto& mapping, auto& test) { test.readings = read_axis_distortion(file, mapping); });
   add_test(evaluate, line, "location-distortion",
-           "Thermal distortion of location errors, by any instrument whose poses are read again and again (ISO 230-3)",
-           "", "warm_up/r-test.study.toml --stop-min 240", location_distortion_numbers(),
+           "Thermal distortion of location errors, from poses that any instrument reads repeatedly (ISO 230-3)", "",
+           "warm_up/r-test.study.toml --stop-min 240", location_distortion_numbers(),
            [](const std::string& file, const ColumnMapping&, LocationDistortionTest& test) {
              test.campaign = gather_readings(test.study = read_study(file));
            });

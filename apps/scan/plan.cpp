@@ -124,11 +124,11 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
       "Page to write (.html): an animation of the path over the part, coverage in colour, figures");
   command
       ->add_option("--beyond-plane-mm", options->beyond,
-                   "Only what lies beyond a plane: NX x + NY y + NZ z >= D, frame of the part; repeatable")
+                   "Scan only what is beyond a plane: NX x + NY y + NZ z >= D, frame of the part; repeatable")
       ->expected(4)
       ->type_name("NX NY NZ D");
-  command->add_option("--position-mm", options->position, "Where the part stands in the workpiece frame")->expected(3);
-  command->add_option("--turn-deg", options->turn, "How the part is turned: about x, then y, then z")->expected(3);
+  command->add_option("--position-mm", options->position, "Position of the part in the workpiece frame")->expected(3);
+  command->add_option("--turn-deg", options->turn, "Rotation of the part: about x, then y, then z")->expected(3);
   command->add_input_file("--stage", options->stage, "Mesh of the stage that turns with the part, workpiece frame");
   options->step.add_to(command);
   const auto ranged = [&](const std::string& name, double& value, double low, double high, const char* words) {

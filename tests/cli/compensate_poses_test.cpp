@@ -112,7 +112,7 @@ TEST_F(CompensatePoses, WhatIsNotReachedIsInItsRowAndInTheExitCode) {
   const CommandResult result =
       abbe({"compensate", "poses", "poses.csv", "--machine", mill, "--errors", "part.errors.toml", "-o", "out.csv"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
-  EXPECT_THAT(result.err, HasSubstr("not brought to 2 of 3 poses"));
+  EXPECT_THAT(result.err, HasSubstr("does not reach 2 of 3 poses"));
   EXPECT_THAT(result.out, HasSubstr("not covered: 1, first in row 2"));
   EXPECT_THAT(result.out, HasSubstr("outside travel: 1, first in row 3"));
   const std::vector<PoseRow> rows = pose_rows(folder.read("out.csv"), machine);

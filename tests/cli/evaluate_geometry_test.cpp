@@ -53,7 +53,8 @@ TEST_F(EvaluateGeometry, ShortArcsSayWhatIsMissingAndTheExitCodeIsNegative) {
   folder.write("arc.csv", text);
   const auto figures = this->figures({"circular", "arc.csv", "--radius-mm", "100"}, ExitCode::computation_says_no);
   EXPECT_THAT(figures.at("G_ccw").at("not_evaluated"), HasSubstr("shorter than 200"));
-  EXPECT_THAT(figures.at("squareness").at("not_evaluated"), HasSubstr("not told from the other causes"));
+  EXPECT_THAT(figures.at("squareness").at("not_evaluated"),
+              HasSubstr("these readings do not separate it from the other causes"));
   EXPECT_FALSE(figures.contains("G_cw"));
   const auto instrument = this->figures({"circular", "arc.csv", "--radius-mm", "100", "--centre", "instrument"});
   EXPECT_NEAR(instrument.at("Fmax_ccw").at("value_um"), 1.5, 1e-6);

@@ -110,12 +110,11 @@ TEST_F(EvaluateLinkage, WhatCannotBeIsRefusedWithFileAndField) {
   LinkageReadings reversed = read_linkage(file);
   for (double& angle : reversed.table_angle) angle = -angle;
   const std::string other = folder.write("reversed.csv", linkage_text(reversed)).string();
-  expect_refused(
-      arguments(other, LinkageConvention::table_moves),
-      other +
-          ": turn: the marks of the circle go round against the stated angles: their sign is wrong; expected "
-          "turn_deg: the angle by which the focus has turned about the axis of the table, seen from the "
-          "board, counter-clockwise from above, at two angles or more");
+  expect_refused(arguments(other, LinkageConvention::table_moves),
+                 other +
+                     ": turn: the marks of the circle run opposite to the stated angles: their sign is wrong; expected "
+                     "turn_deg: the angle by which the focus has turned about the axis of the table, seen from the "
+                     "board, counter-clockwise from above, at two angles or more");
   std::vector<std::string> wrong = arguments(file, LinkageConvention::table_moves);
   wrong.insert(wrong.end(), {"--convention", "head-moves"});
   expect_refused(wrong,

@@ -192,10 +192,9 @@ TEST_F(Import, SmallAndAmbiguousTables) {
   expect_refused("", {}, "table.txt: the file is empty");
   expect_refused("\n\n", {}, "table.txt: the file is empty; expected a table of readings");
   expect_refused("x_mm,y_mm,z_mm\n", {}, "no table was found");
-  expect_refused(
-      "x_mm;y_mm;z_mm\n1,234;2;3\n", {},
-      "table.txt:2:1: '1,234' in line 2 may have decimals or thousands, and nothing in the table tells which; "
-      "expected --decimal point or --decimal comma");
+  expect_refused("x_mm;y_mm;z_mm\n1,234;2;3\n", {},
+                 "table.txt:2:1: '1,234' in line 2 may have decimals or thousands, and the table does not show which; "
+                 "expected --decimal point or --decimal comma");
   EXPECT_EQ(imported("x_mm;y_mm;z_mm\n1,234;2;3\n", {"--decimal", "comma"}), "x_mm,y_mm,z_mm\n1.234,2,3\n");
   EXPECT_EQ(imported("x_mm;y_mm;z_mm\n1,234;2;3\n", {"--decimal", "point"}), "x_mm,y_mm,z_mm\n1234,2,3\n");
   expect_refused("x_mm,y_mm,z_mm\n1.5,2,3\n4,5\n", {},

@@ -170,7 +170,7 @@ TEST_F(Plans, ABarNeedsItsCircles) {
   folder.write("trunnion.study.toml", trunnion_study() + bar);
   const CommandResult refused = abbe({"plan", "trunnion.study.toml"});
   EXPECT_EQ(refused.exit_code, bad_input);
-  EXPECT_THAT(refused.err, HasSubstr("setup bar: it is not said where instrument \"ball-bar\" can be read"));
+  EXPECT_THAT(refused.err, HasSubstr("setup bar: the study does not say where instrument \"ball-bar\" can be read"));
 
   folder.write("both.study.toml", trunnion_study() + bar +
                                       "[[setup.plan]]\nkind = \"circle\"\nplane = [\"X\", \"Y\"]\n"

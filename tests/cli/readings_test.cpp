@@ -120,7 +120,7 @@ TEST_F(ReadingsAgainstTheMachine, CheckFindsATrackerThatWasMoved) {
 TEST_F(ReadingsAgainstTheMachine, CheckDoesNotSayThatTheMachineExplainsWhatItCannotJudge) {
   const CommandResult result = abbe({"check", kFolder + "three_axis/level-and-autocollimator.study.toml"});
   EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("they cannot be judged by the nominal machine\n"));
+  EXPECT_THAT(result.out, HasSubstr("they cannot be checked against the nominal machine\n"));
   EXPECT_THAT(result.out, Not(HasSubstr("the nominal machine explains")));
 }
 

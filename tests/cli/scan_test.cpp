@@ -171,7 +171,7 @@ TEST_F(Scan, BadInputIsNamed) {
   EXPECT_THAT(empty.err, HasSubstr("empty.csv"));
   const CommandResult matrix = abbe({"deviate", file("pin-scan.csv"), file("pin.stl"), "--transform", "transform.csv"});
   EXPECT_EQ(matrix.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(matrix.err, HasSubstr("no rotation matrix"));
+  EXPECT_THAT(matrix.err, HasSubstr("not a rotation matrix"));
   const CommandResult start = abbe({"register", file("pin-scan.csv"), file("pin.stl"), "--start", "nowhere.csv"});
   EXPECT_EQ(start.exit_code, ExitCode::bad_input);
   EXPECT_THAT(start.err, HasSubstr("nowhere.csv"));

@@ -127,7 +127,7 @@ TEST_F(StandardInput, ContentsThatCannotBeToldAreRefusedWithWhatToDo) {
                     cloud =
                         "a point cloud that begins like an XYZ file (numbers), a CSV file ('x_mm,y_mm,z_mm'), a "
                         "PLY file ('ply'), a PCD file ('# .PCD'), an E57 file ('ASTM-E57') or an OBJ file ('v X Y Z')",
-                    named = "; or give the name of a file, whose extension tells its kind\n";
+                    named = "; or give the name of a file, whose extension shows its kind\n";
   const auto said = [&](const std::string& file, const std::string& words) {
     const CommandResult result = abbe_reads(file, words);
     EXPECT_EQ(result.exit_code, ExitCode::bad_input);

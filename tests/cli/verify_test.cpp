@@ -201,7 +201,7 @@ TEST_F(VerifyCommand, WhatIsMissingOrOutOfRangeIsSaid) {
   EXPECT_THAT(verify({"no-such-results"}).err, HasSubstr("no-such-results: is not a folder"));
   EXPECT_THAT(verify({"--range", "X_deg=0:1"}).err, HasSubstr("unit 'deg' for a linear axis"));
   EXPECT_THAT(verify({"--range", "B_deg=0:1"}).err, HasSubstr("the machine has no axis 'B'"));
-  EXPECT_THAT(verify({"--range", "X_mm=5:1"}).err, HasSubstr("the larger one behind the smaller"));
+  EXPECT_THAT(verify({"--range", "X_mm=5:1"}).err, HasSubstr("or two with the smaller one first"));
   const std::vector<std::string> line = {"--range", "A_deg=-20", "--range", "C_deg=0",
                                          "--range", "Y_mm=0",    "--range", "Z_mm=-100"};
   const CommandResult on_a_line = verify(line);

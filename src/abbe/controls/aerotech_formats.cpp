@@ -191,8 +191,9 @@ TableFormat aerotech_1d_format() {
       "360 degrees";
   format.takes.insert(TableSetting::tolerance_rad);
   format.cannot =
-      "tables add up, each of one axis's position: an angle times a lever that another axis changes is right only on "
-      "the lines through the reference pose (aerotech-2d), and the direction of the tool stays";
+      "each table depends on the position of one axis, and tables add up: an angle times a lever that another axis "
+      "changes is corrected only on the lines through the reference pose (see aerotech-2d), and the direction of the "
+      "tool is not corrected";
   format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_aerotech_lines(format, machine, errors, request);
   };
@@ -211,8 +212,9 @@ TableFormat aerotech_2d_format() {
   format.unverified += "; that interpolation in a cell is linear in each position (bilinear)";
   format.most_nodes = kPlaneNodes;
   format.cannot =
-      "linear axes take the shift of the point as it is with the rotary axes where --at says; what depends on three "
-      "axes together is right on the planes through the reference pose; rotary axes and the direction of the tool stay";
+      "linear axes correct the shift of the point with the rotary axes where --at puts them; effects of three axes "
+      "together are corrected only on the planes through the reference pose; rotary axes and the direction of the tool "
+      "are not corrected";
   format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_aerotech_planes(format, machine, errors, request);
   };

@@ -190,8 +190,8 @@ TableFormat fanuc_lattice_format() {
   format.default_tolerance_mm = 1e-3;
   format.most_nodes = kFanucLatticePoints * kFanucLatticePoints * kFanucLatticePoints;
   format.cannot =
-      "linear axes take the shift of the point as it is with the rotary axes where --at says; whole units are added; "
-      "rotary axes and the direction of the tool stay";
+      "linear axes correct the shift of the point with the rotary axes where --at puts them; whole units are added; "
+      "rotary axes and the direction of the tool are not corrected";
   format.default_name = [](std::size_t index, const Axis& /*axis*/) { return fmt::format("{}", index + 1); };
   format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_fanuc_lattice(format, machine, errors, request);

@@ -32,9 +32,9 @@ WrittenTables make_fanuc(const TableFormat& format, const Machine& machine, cons
     constants.push_back(table.forward[pitch.reference_point - first_point]);
     first_point += table.positions.size();
     made.remarks.push_back(fmt::format(
-        "{}: data rounded to {:g} {}; they are zero at the reference position of the control (its parameter "
-        "1240, machine coordinate {:g} {} of the machine file; --reference-position says where else it is), "
-        "which has to be shifted by {:.2f} {} (the figures above take it that it is)",
+        "{}: data rounded to {:g} {}; they are zero at the reference position of the control (its parameter 1240, "
+        "machine coordinate {:g} {} of the machine file; --reference-position says where else it is), which must be "
+        "shifted by {:.2f} {} (the figures above assume that it is)",
         machine.axes[table.input].name, micro_per_unit(rotary) * unit * pitch.magnification, micro_unit(rotary),
         reference / position_unit(machine.axes[table.input]), position_suffix(machine.axes[table.input]),
         micro_per_unit(rotary) * constants.back(), micro_unit(rotary)));
@@ -85,8 +85,8 @@ TableFormat fanuc_pitch_format() {
   format.axis_names = "number of the controlled axis";
   format.most_nodes = kFanucPoints;
   format.cannot =
-      "an axis is corrected by its own position only, in whole units and zero at its reference position; "
-      "a constant is the reference position's matter";
+      "an axis is corrected by its own position only, in whole units and zero at its reference position; a constant is "
+      "corrected by the reference position";
   format.default_name = [](std::size_t index, const Axis& /*axis*/) { return fmt::format("{}", index + 1); };
   format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_fanuc(format, machine, errors, request);

@@ -109,7 +109,7 @@ KinematicFormat general_kinematic_values() {
   format.what = "table (CSV) of positions, directions and zero positions of all rotary axes, for every machine";
   format.convention =
       "mm and degrees, all axes at zero. A point of each axis line relative to the origin of the machine frame, to the "
-      "gauge point, and to the axis that carries it; direction: unit vector; zero: what the axis stands off its "
+      "gauge point, and to the axis that carries it; direction: unit vector; zero: the deviation of the axis from its "
       "command";
   format.cannot =
       "positions, directions and zero positions of rotary axes only; error motions and linear axes are not in it";

@@ -208,9 +208,8 @@ TableFormat heidenhain_comp_format() {
   format.backlash = heidenhain_format().backlash;
   format.most_nodes = kHeidenhainPoints;
   format.cannot =
-      "tool offset errors are not written; rotary axes are corrected by themselves and the point by X, Y and Z, so "
-      "that "
-      "tilts of the tool stay";
+      "tool offset errors are not written; rotary axes correct their own errors, and X, Y and Z correct the point, so "
+      "tilts of the tool remain";
   format.write = make_kinematics_comp;
   return format;
 }

@@ -68,8 +68,9 @@ TableFormat heidenhain_format() {
   format.axis_names = "axis key of CfgAxes/axisList";
   format.most_nodes = kHeidenhainPoints;
   format.cannot =
-      "tables add up, each of one axis's position: an angle times a lever that another axis changes is right "
-      "only on the lines through the reference pose, and the direction of the tool stays";
+      "each table depends on the position of one axis, and tables add up: an angle times a lever that another axis "
+      "changes is corrected only on the lines through the reference pose, and the direction of the tool is not "
+      "corrected";
   format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_heidenhain(format, machine, errors, request);
   };

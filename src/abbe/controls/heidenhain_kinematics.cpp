@@ -147,8 +147,8 @@ KinematicFormat heidenhain_kinematic_values() {
   format.name = kValuesName;
   format.what = "kinematics description of HEIDENHAIN iTNC 530: rows Trans and MachAxis from the tool to the table";
   format.convention =
-      "COORD in mm and degrees, all axes at zero: each Trans moves the frame from the tool reference point (gauge "
-      "point) on; tilts of an axis stand in front of MachAxis and are undone behind it";
+      "COORD in mm and degrees, all axes at zero: starting at the tool reference point (gauge point), each Trans moves "
+      "the frame; tilts of an axis come before MachAxis and are undone after it";
   format.unverified =
       "the sense of rows and axes, which follows from one example of the manual; head, end and columns of the text; "
       "that "

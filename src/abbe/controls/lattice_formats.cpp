@@ -49,8 +49,8 @@ TableFormat lattice_csv_format() {
   format.takes = {reference, names, axes, tolerance_mm, tolerance_rad, most_nodes};
   format.most_nodes = 2'000'000;
   format.cannot =
-      "linear axes take the shift of the point, rotary axes their own positioning error; the direction of "
-      "the tool stays";
+      "linear axes correct the shift of the point, rotary axes their own positioning error; the direction of the tool "
+      "is not corrected";
   format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_lattice(false, format, machine, errors, request);
   };

@@ -53,9 +53,8 @@ TableFormat linuxcnc_format() {
   format.file_per_axis = true;
   format.most_nodes = kLinuxCncPoints;
   format.cannot =
-      "a joint is corrected by its own position only, so errors across it are not, and an angle times a lever only on "
-      "the line "
-      "through the reference pose";
+      "a joint is corrected by its own position only: errors across it are not corrected, and an angle times a lever "
+      "is corrected only on the line through the reference pose";
   format.directions = true;
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
     return fmt::format("in the forward and reverse columns of joint {}; without COMP_FILE its BACKLASH would be {}",

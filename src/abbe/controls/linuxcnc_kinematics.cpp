@@ -67,8 +67,8 @@ KinematicFormat linuxcnc_kinematic_values() {
   format.name = "linuxcnc";
   format.what = "pins of a kinematics module that fits the chain, setp lines for a HAL file";
   format.convention =
-      "mm and degrees, in joint positions: the gauge point with all joints at zero is the origin; what each pin is "
-      "stands in docs/kinematic-values.md";
+      "mm and degrees, in joint positions: the gauge point with all joints at zero is the origin; "
+      "docs/kinematic-values.md explains the pins";
   format.cannot =
       "the modules have positions of axes and, apart from one angle of xyzacb_trsrn and xyzbca_trsrn, no directions; "
       "error motions and linear axes are not in them";

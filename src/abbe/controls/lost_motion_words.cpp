@@ -10,12 +10,12 @@ std::string linuxcnc_backlash_text(const Machine& machine, const ErrorSet& error
   std::string text;
   const std::vector<JointBacklash> all = linuxcnc_backlash(machine, errors);
   if (all.empty()) return text;
-  text += "  reversal values are not in the file, kinematics do not know directions; in LinuxCNC's ini file:\n";
+  text += "  reversal values are not in the file, because kinematics do not know directions; in LinuxCNC's ini file:\n";
   for (const JointBacklash& one : all) {
     const char* const unit = one.rotary ? "deg" : "mm";
     if (one.lost_motion > 0) {
-      text += fmt::format("    {} = {:.7f}    ({}, {}; more than that by what was set when the errors were measured)\n",
-                          one.setting, one.lost_motion, one.axis, unit);
+      text += fmt::format("    {} = {:.7f}    ({}, {}; add what was set when the errors were measured)\n", one.setting,
+                          one.lost_motion, one.axis, unit);
     } else {
       text += fmt::format("    {}    {:.7f} {} less than when the errors were measured ({}: no lost motion)\n",
                           one.setting, -one.lost_motion, unit, one.axis);

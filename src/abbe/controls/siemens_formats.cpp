@@ -61,8 +61,8 @@ TableFormat siemens_cec_format() {
   format.axis_names = "machine axis name (AX1, X1)";
   format.most_nodes = 2000;
   format.cannot =
-      "tables add up, each of one axis's position: an angle times a lever that another axis changes is right "
-      "only on the lines through the reference pose, and orientation is not corrected";
+      "each table depends on the position of one axis, and tables add up: an angle times a lever that another axis "
+      "changes is corrected only on the lines through the reference pose, and orientation is not corrected";
   format.directions = true;
   format.backlash = [](const std::string& axis, double /*lost_motion*/, bool /*rotary*/) {
     return fmt::format("in tables of direction 1 and -1; MD32450 $MA_BACKLASH of {} stays as it was", axis);
@@ -88,9 +88,8 @@ TableFormat siemens_eec_format() {
   format.axis_names = "machine axis name (X1)";
   format.most_nodes = 5000;
   format.cannot =
-      "an axis is corrected by its own position only, so errors across it are not, and an angle times a lever only on "
-      "the "
-      "line through the reference pose";
+      "an axis is corrected by its own position only: errors across it are not corrected, and an angle times a lever "
+      "is corrected only on the line through the reference pose";
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
     return fmt::format("MD32450 $MA_BACKLASH of {} takes it: {}", axis, lost_motion_words(lost_motion, rotary));
   };

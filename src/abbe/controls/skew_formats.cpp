@@ -76,8 +76,8 @@ TableFormat skew_format(bool klipper) {
       "over the travel with a free constant";
   format.takes = {reference};
   format.cannot =
-      "three angles and nothing else: no scale, no straightness, no error motion; what is left of a "
-      "constant is a shift of the workpiece's zero";
+      "three angles and nothing else: no scale, no straightness, no error motion; a remaining constant is a shift of "
+      "the workpiece zero";
   if (!klipper) {
     format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
       return fmt::format("M425 {}... F1 of a firmware with BACKLASH_COMPENSATION takes it: {}", axis,

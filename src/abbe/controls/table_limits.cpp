@@ -45,10 +45,10 @@ void check_limits(const ControlTableRequest& request, const CommandCorrection& c
   };
   const double before = made.before.position_statistics.rms, after = made.after.position_statistics.rms;
   if (!made.tables.empty() && after > kWorse * before) {
-    made.refused.push_back(fmt::format(
-        "the displacement of the tool would grow from {:.3f} to {:.3f} um rms: the tables hold near the reference "
-        "pose only (--at, --axis)",
-        1e3 * before, 1e3 * after));
+    made.refused.push_back(
+        fmt::format("the displacement of the tool would grow from {:.3f} to {:.3f} um rms: the tables are valid only "
+                    "near the reference pose (--at, --axis)",
+                    1e3 * before, 1e3 * after));
   }
   for (const TableFigures& table : made.tables) refuse(table.largest, table.is_angle, "table " + table.name);
   refuse(made.largest_mm, false, made.largest_mm_at);

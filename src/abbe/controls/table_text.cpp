@@ -93,7 +93,7 @@ std::string table_text(const TableReport& report) {
   if (tables.empty()) text += "  no table is needed: there are no errors that this format carries\n";
   for (const std::string& name : made.left_out) text += fmt::format("  left out: {}\n", name);
   for (const std::string& name : made.left_out_kept)
-    text += fmt::format("  kept, because not small together with others: {}\n", name);
+    text += fmt::format("  kept, because they are not small together with others: {}\n", name);
   text += state_line(report.partial.at_state) + workpiece_line(made.workpiece);
   text += errors_carried_text(made);
   text += volumetric_text(made.volumetric);

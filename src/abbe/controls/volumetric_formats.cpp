@@ -117,8 +117,8 @@ TableFormat beckhoff_format() {
   format.axis_names = "letter X Y Z A B C";
   format.most_nodes = 10000;
   format.cannot =
-      "tool offset errors are not written, and the control corrects X, Y and Z only: the direction of the "
-      "tool stays";
+      "tool offset errors are not written, and the control corrects only X, Y and Z: the direction of the tool is not "
+      "corrected";
   format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_volumetric(true, format, machine, errors, request);
   };

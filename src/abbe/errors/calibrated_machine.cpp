@@ -10,7 +10,8 @@ namespace abbe {
 
 CalibratedMachine calibrated_machine(const Machine& machine, const ErrorSet& errors) {
   const std::string first = first_error_with_state(machine, errors);
-  if (!first.empty()) throw std::invalid_argument(first + " depends on a state and is no constant of the geometry");
+  if (!first.empty())
+    throw std::invalid_argument(first + " depends on a state, so it is not a constant of the geometry");
   CalibratedMachine result{machine, std::vector<double>(machine.axes.size(), 0.0), {}};
   for (const ErrorMotion& motion : errors.motions) {
     const bool moves = std::any_of(motion.coefficients.begin(), motion.coefficients.end(),

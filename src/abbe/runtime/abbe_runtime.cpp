@@ -249,7 +249,7 @@ const char* abbe_runtime_text(int result) ABBE_NOEXCEPT {
     case ABBE_NOT_CONVERGED:
       return "not converged";
     case ABBE_NOT_POSSIBLE:
-      return "the machine has no three linear axes to take a point";
+      return "the machine does not have three linear axes to reach a point";
     case ABBE_SINGULAR:
       return "the linear axes lie in one plane";
     case ABBE_NULL:

@@ -277,7 +277,7 @@ TEST(ExpansionStudy, IsReportedAndWritten) {
   const StudyResult result = run_study(study);
   ASSERT_TRUE(result.usable()) << result.identification.message;
   for (const std::string& warning : result.warnings) {
-    EXPECT_THAT(warning, Not(HasSubstr("what is stated of them apart from each other is a convention")));
+    EXPECT_THAT(warning, Not(HasSubstr("how they are divided is a convention")));
   }
   const nlohmann::ordered_json json = study_summary(study, result)["identified"]["expansions"][0];
   EXPECT_EQ(json["axis"], "X");

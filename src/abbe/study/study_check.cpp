@@ -34,9 +34,9 @@ std::string study_check_text(const Study& study, const StudyCheck& check) {
   }
   for (const std::string& warning : check.campaign.warnings) text += fmt::format("warning: {}\n", warning);
   if (check.judged_places() == 0) {
-    text += "no place of a tracker is sought from enough readings: they cannot be judged by the nominal machine\n";
+    text += "no pose of a tracker is found from enough readings: they cannot be checked against the nominal machine\n";
   } else if (check.is_explained()) {
-    text += "the nominal machine explains the readings of all places that can be judged\n";
+    text += "the nominal machine explains the readings of all stations that can be checked\n";
   }
   return text;
 }

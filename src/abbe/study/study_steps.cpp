@@ -148,11 +148,10 @@ void identify_study(const Study& study, StudyResult& result, const Identificatio
   for (const CoveredState& state : covered_states(study, result)) {
     if (state.to - state.from > 1e-9 * (1 + std::abs(state.to))) continue;
     if (is_known_beforehand(study, result, state.column)) continue;
-    result.warnings.push_back(fmt::format(
-        "{} is {:.6g} at all readings: errors with this state cannot be told from those without it, and "
-        "what is stated of them apart from each other is a convention; readings at another value would show "
-        "them",
-        state.column, state.to));
+    result.warnings.push_back(
+        fmt::format("{} is {:.6g} at all readings: errors with this state cannot be told from those without it, and "
+                    "how they are divided is a convention; readings at another value would show them",
+                    state.column, state.to));
   }
   result.not_identified = find_not_identified(study, result, job.advice);
   result.volumetric = study_volumetric_figures(study, result);

@@ -25,7 +25,7 @@ ChunkCorrection::ChunkCorrection(const Machine& machine, const ErrorSet& errors,
       correction_(machine, errors, words, options.rest, options.inverse, options.tool_length_share),
       problem_(correction_.problem()) {
   if (problem_.empty() && errors.composition != Composition{}) {
-    problem_ = "errors are composed in another way than that of ISO 230, which programs are not corrected for";
+    problem_ = "errors are composed differently from ISO 230, and programs cannot be corrected for that";
   }
   if (!problem_.empty()) return;
   bounder_.emplace(machine_, errors, std::array<std::size_t, 3>{words_.axis[0], words_.axis[1], words_.axis[2]});

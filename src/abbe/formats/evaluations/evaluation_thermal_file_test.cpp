@@ -60,8 +60,8 @@ TEST(ThermalFile, ColumnsMayHaveOtherNamesAndBeIgnored) {
 
 TEST(ThermalFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(refused_thermal("time_s,X_um\n0,1\n5,1\n5,2\n"),
-            "t.csv:4: time_s: 5 s comes behind 5 s; expected rows in the order of time; a clock that begins anew at "
-            "midnight counts on");
+            "t.csv:4: time_s: 5 s comes behind 5 s; expected rows in chronological order; times must not restart at "
+            "midnight");
   EXPECT_THAT(refused_thermal("time_h,X_um\n23.9,1\n0.1,2\n"),
               StartsWith("t.csv:3: time_h: 360 s comes behind 86040 s"));
   EXPECT_EQ(refused_thermal("time_s,X\n0,1\n"),

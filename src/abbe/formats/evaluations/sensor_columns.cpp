@@ -123,7 +123,7 @@ TimeSeries sensor_series(const PlacedTable& table, std::size_t time, std::size_t
     }
     if (!series.time.empty() && at <= series.to()) {
       throw InputError(table.place(row, times.header), fmt::format("{:.9g} s comes behind {:.9g} s", at, series.to()),
-                       "rows in the order of time; a clock that begins anew at midnight counts on");
+                       "rows in chronological order; times must not restart at midnight");
     }
     series.time.push_back(at);
     series.values.push_back(value);

@@ -41,7 +41,7 @@ TEST_F(Traces, StandInTheOrderOfTime) {
   EXPECT_THAT(read(header + "0.5,1,2,-3,0,0\n0.5,1,2,-3,0,0\n0.501,1,2,-3,0,0\n").time_s, ElementsAre(0.5, 0.5, 0.501));
   const std::string message = problem(header + "0.5,1,2,-3,0,0\n# pause\n0.499,1,2,-3,0,0\n");
   EXPECT_THAT(message, HasSubstr("trace.csv:4: time_s: 0.499 s comes behind 0.5 s"));
-  EXPECT_THAT(message, HasSubstr("rows in the order of time"));
+  EXPECT_THAT(message, HasSubstr("rows in chronological order"));
 }
 
 TEST_F(Traces, MayHaveTheOtherColumnsOfPlannedCommandsAndNoMore) {

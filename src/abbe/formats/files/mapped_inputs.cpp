@@ -37,7 +37,7 @@ void end(int /*signal*/, siginfo_t* about, void* /*context*/) {
       std::find_if(places.begin(), places.end(), [&](const Place& p) { return at >= p.begin && at < p.end; });
   say("abbe: ");
   say(found != places.end() ? std::string_view(found->name.data()) : std::string_view("an input"));
-  say(": was cut short while it was read; expected a file that nobody changes meanwhile\n");
+  say(": was truncated while it was read; expected a file that does not change meanwhile\n");
   ::_exit(exit_code_when_cut);
 }
 

@@ -31,7 +31,7 @@ TEST(MappedInputs, AFileThatIsCutShortIsNamedAndEndsTheProcess) {
     if (::truncate(name.c_str(), 0) == 0) ::_exit(read_all(file) == 0 ? 8 : 9);
   };
   EXPECT_EXIT(cut(), testing::ExitedWithCode(2),
-              "a.csv: was cut short while it was read; expected a file that nobody changes meanwhile");
+              "a.csv: was truncated while it was read; expected a file that does not change meanwhile");
 }
 
 TEST(MappedInputs, FilesBeyondThoseThatHaveANameAreReadToo) {

@@ -75,7 +75,8 @@ class WorkCheckpoint::OneWork {
     if (found == all_.found_.end()) return;
     std::size_t count = 0;
     for (const auto& [block, place] : found->second) {
-      if (block >= work_.blocks) throw WorkError("unfinished work has a block that is none of this work");
+      if (block >= work_.blocks)
+        throw WorkError("the unfinished work contains a block that does not belong to this work");
       work_.unpack(block, all_.read(place));
       rest_.is_there[block] = 1;
       if (work_.finished) work_.finished(block);

@@ -292,7 +292,7 @@ ColumnMatch match_by_order(ImportKind kind, const std::vector<ImportColumn>& wan
                                                : kind == ImportKind::tracker && numbers.size() == ordered.size();
   for (std::size_t i = 0; fits && i < ordered.size(); ++i) {
     match.source[ordered[i]] = numbers[i];
-    match.doubts[ordered[i]] = "there are no names of columns; the numbers are taken in their order";
+    match.doubts[ordered[i]] = "there are no column names; the columns are taken in their order";
   }
   find_missing(kind, wanted, match);
   return match;

@@ -83,7 +83,7 @@ class DmisReader {
       take_statement();
       statement_.clear();
     }
-    if (!statement_.empty()) refuse("", "the last statement goes on in a line that is not there", "a line below '$'");
+    if (!statement_.empty()) refuse("", "the last statement continues in a line that is missing", "a line below '$'");
     write();
     return std::move(table_);
   }

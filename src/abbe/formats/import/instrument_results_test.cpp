@@ -158,7 +158,7 @@ TEST(MTConnectPositions, ThatOnlyWereCommandedOrAreTwiceAreInDoubt) {
   const InstrumentTable table = read_as("mtconnect", test::replaced(commanded, "COMMANDED", "ACTUAL"));
   EXPECT_EQ(table.rows, "10:02,4,5,7\n");
   EXPECT_THAT(read_as("mtconnect", commanded).doubts,
-              testing::Contains("PathPosition 'p', TARGET is where the machine was to be, not where it was"));
+              testing::Contains("PathPosition 'p', TARGET is the commanded position, not the actual one"));
 }
 
 TEST(MTConnectPositions, AreRefusedWhereTheyAreNotThree) {
@@ -237,7 +237,7 @@ TEST(DmisOutput, RefusesPointsThatAreNotWhole) {
   EXPECT_EQ(refusal_of("dmis", "FILNAM/'a'\nENDFIL\n"),
             "t: FEAT: there are no points; expected FA(NAME)=FEAT/POINT,CART,x,y,z,i,j,k");
   EXPECT_EQ(refusal_of("dmis", "UNITS/MM\nFA(P1)=FEAT/POINT,$"),
-            "t:2: the last statement goes on in a line that is not there; expected a line below '$'");
+            "t:2: the last statement continues in a line that is missing; expected a line below '$'");
 }
 
 }  // namespace

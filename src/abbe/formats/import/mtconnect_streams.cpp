@@ -133,7 +133,7 @@ class StreamsReader {
                                           shown_text(best.device), one.words(), shown_text(one.device)));
     }
     if (best.rank() == 0) {
-      table_.doubts.push_back(fmt::format("{} is where the machine was to be, not where it was", best.words()));
+      table_.doubts.push_back(fmt::format("{} is the commanded position, not the actual one", best.words()));
     }
   }
 

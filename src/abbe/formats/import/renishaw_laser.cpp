@@ -194,7 +194,7 @@ class LaserReader {
           refuse(reading.line, "Target",
                  fmt::format("run {} goes from target {} to target {}, not on in one direction", reading.run, run.last,
                              reading.target),
-                 "targets in the order of their positions, which tells the side from which each was approached");
+                 "targets in the order of their positions, which shows the side from which each was approached");
         }
         run.direction = direction;
       }
@@ -202,7 +202,7 @@ class LaserReader {
     }
     for (const LaserReading& reading : readings_) {
       if (runs_[reading.run - 1].direction != 0) continue;
-      refuse(reading.line, "Run", fmt::format("run {} has one target, and nothing tells its direction", reading.run),
+      refuse(reading.line, "Run", fmt::format("run {} has only one target, so its direction is unknown", reading.run),
              "two targets or more");
     }
   }
@@ -233,11 +233,11 @@ class LaserReader {
     const bool given = !hints_.length_unit.empty();
     InstrumentColumn target{"Targets", "target", "mm", given, given ? "mm as given" : "the positions of the targets"};
     InstrumentColumn deviation{"Data", "deviation", "um", given};
-    deviation.reason = given ? "um, as such files have beside targets in mm; actual less target"
-                             : "actual less target, as programs compute it that write such files";
+    deviation.reason = given ? "um, as usual in such files with targets in mm; actual minus target"
+                             : "actual minus target, as the programs that write such files compute it";
     if (!given) {
       target.doubts.emplace_back(
-          "states no unit; mm is assumed, as programs do that read such files (--length-unit mm)");
+          "states no unit; mm is assumed, as by programs that read such files (--length-unit mm)");
       deviation.doubts.emplace_back("states no unit; um is assumed, as such programs do (--length-unit mm says both)");
     }
     table_.kind = ImportKind::positioning;

@@ -82,10 +82,9 @@ TEST(RenishawLaserFile, TellsTheDirectionByTheOrderOfTheTargets) {
   const InstrumentTable table = laser_table(changed("-280.000000  -230.000000 \n-180.000000 ", "30  20\n10"));
   EXPECT_THAT(table.rows, HasSubstr("1,-,30,-0.700\n"));
   EXPECT_THAT(table.rows, HasSubstr("2,+,10,-2.100\n"));
-  EXPECT_EQ(
-      laser_refusal("1   3      -1.400\n", "1   3      -1.400\n1   2   1\n"),
-      "t:27: Target: run 1 goes from target 3 to target 2, not on in one direction; expected targets in the order "
-      "of their positions, which tells the side from which each was approached");
+  EXPECT_EQ(laser_refusal("1   3      -1.400\n", "1   3      -1.400\n1   2   1\n"),
+            "t:27: Target: run 1 goes from target 3 to target 2, not on in one direction; expected targets in the "
+            "order of their positions, which shows the side from which each was approached");
   EXPECT_THAT(laser_refusal("-280.000000  -230.000000", "-230.000000  -230.000000"),
               HasSubstr("t:25: Target: run 1 goes from target 1 to target 2, not on in one direction"));
   const InstrumentTable forth = laser_table(
@@ -161,7 +160,7 @@ TEST(RenishawLaserFile, RefusesWhatItDoesNotKnow) {
             "t: Run Target Data: there are no readings; expected run, target and deviation in um");
   EXPECT_THAT(refusal_of("renishaw-laser",
                          test::replaced(changed("2   3      -2.100\n2   2      -1.000\n", ""), "-1.500", "-1")),
-              HasSubstr("t:27: Run: run 2 has one target, and nothing tells its direction"));
+              HasSubstr("t:27: Run: run 2 has only one target, so its direction is unknown"));
 }
 
 }  // namespace

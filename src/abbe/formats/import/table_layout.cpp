@@ -115,7 +115,7 @@ void doubt_comments(const std::vector<SampleLine>& lines, std::size_t first, con
     if (!row.split(without_comment_mark(lines[i].text, mark), split.separator)) continue;
     if (row.fields().size() != split.columns) continue;
     found.doubts.push_back(
-        fmt::format("line {} begins with {} and looks like a row; it is passed over", lines[i].number, mark));
+        fmt::format("line {} begins with {} and looks like a row; it is skipped", lines[i].number, mark));
     return;
   }
 }

@@ -79,8 +79,8 @@ TEST(TableLayoutOfText, AllRowsDecideAboutTheDecimalMark) {
 
 TEST(TableLayoutOfText, WhatNothingDecidesIsAskedFor) {
   EXPECT_EQ(message_of_layout("x;y\n1;2\n3;1,234\n"),
-            "t.txt:3:3: '1,234' in line 3 may have decimals or thousands, and nothing in the table tells which; "
-            "expected --decimal point or --decimal comma");
+            "t.txt:3:3: '1,234' in line 3 may have decimals or thousands, and the table does not show which; expected "
+            "--decimal point or --decimal comma");
   EXPECT_THAT(message_of_layout("x;y\n1.234;2\n"), HasSubstr("'1.234' in line 2 may have decimals or thousands"));
   EXPECT_THAT(message_of_layout("x;y\n1.234;1,234\n"), HasSubstr("one of '1.234' in line 2 and '1,234' in line 2 has"));
   EXPECT_THAT(message_of_layout("x;y\n1.5;2\n3;4,5\n"),
@@ -99,7 +99,7 @@ TEST(TableLayoutOfText, CommentsAreNoRowsAndPointsCalledWithTheirMarkAreNoCommen
   EXPECT_EQ(named.layout.comment, "");
   EXPECT_EQ(named.layout.first_line, 2U);
   const FoundLayout hidden = find_layout("# test\nx;y\n1;2\n#3;4\n5;6\n", "t");
-  EXPECT_THAT(hidden.doubts, ElementsAre("line 4 begins with # and looks like a row; it is passed over"));
+  EXPECT_THAT(hidden.doubts, ElementsAre("line 4 begins with # and looks like a row; it is skipped"));
 }
 
 TEST(TableLayoutOfText, ABrokenFirstRowIsARow) {

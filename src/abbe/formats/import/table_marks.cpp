@@ -117,14 +117,14 @@ void find_number_marks(std::string_view text, const std::string& file, std::size
   } else if (perhaps_point != kNowhere && perhaps_comma != kNowhere) {
     throw_refusal(text, file,
                   {std::min(perhaps_point, perhaps_comma), "",
-                   fmt::format("one of {} and {} has thousands, and nothing in the table tells which",
+                   fmt::format("one of {} and {} has thousands, and the table does not show which",
                                shown(perhaps_point), shown(perhaps_comma)),
                    "--decimal point or --decimal comma"});
   } else {
     const std::size_t at = std::min(perhaps_point, perhaps_comma);
     throw_refusal(
         text, file,
-        {at, "", fmt::format("{} may have decimals or thousands, and nothing in the table tells which", shown(at)),
+        {at, "", fmt::format("{} may have decimals or thousands, and the table does not show which", shown(at)),
          "--decimal point or --decimal comma"});
   }
   const bool by_point = layout.decimal == DecimalMark::point;

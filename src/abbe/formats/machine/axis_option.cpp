@@ -70,8 +70,7 @@ void take_range_option(const Machine& machine, const std::string& text, std::vec
   const std::string expected = "AXIS_unit=from:to or AXIS_unit=position, such as X_mm=-100:100";
   const auto [axis, unit, numbers] = axis_numbers_option(machine, "--range", text, expected);
   if (numbers.size() > 2 || !(numbers.size() == 1 || numbers[0] < numbers[1])) {
-    throw InputError({.field = "--range " + text}, "needs a position, or two with the larger one behind the smaller",
-                     expected);
+    throw InputError({.field = "--range " + text}, "needs a position, or two with the smaller one first", expected);
   }
   const Axis& moved = machine.axes[axis];
   if (!moved.endless && !(numbers.front() * unit >= moved.travel_min && numbers.back() * unit <= moved.travel_max)) {

@@ -58,7 +58,8 @@ std::vector<double> values_and_age(const Machine& machine, const std::string& op
   std::vector<double> values = state_options(machine, option, states);
   if (!days || is_truth(file)) return values;  // the truth is what it is
   if (!file.ageing.any()) {
-    throw InputError({.file = path, .field = "ageing"}, "it is not said how these errors wander with time",
+    throw InputError({.file = path, .field = "ageing"},
+                     "the errors file does not state how these errors change with time",
                      "a table [ageing] with um_per_sqrt_day and urad_per_sqrt_day");
   }
   add_ageing(machine, *days, file);

@@ -49,9 +49,10 @@ RigidTransform parse_transform(std::string_view contents, const std::string& fil
   const double off =
       (result.rotation.transpose() * result.rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(off < 1e-5)) {
-    throw InputError({file, 0, 0, "rotation_x, rotation_y, rotation_z"},
-                     fmt::format("no rotation matrix: its columns are off unit length or right angles by {:.2g}", off),
-                     "a rotation, off by at most 1e-5");
+    throw InputError(
+        {file, 0, 0, "rotation_x, rotation_y, rotation_z"},
+        fmt::format("not a rotation matrix: its columns deviate from unit length or right angles by {:.2g}", off),
+        "a rotation, off by at most 1e-5");
   }
   if (result.rotation.determinant() < 0) {
     throw InputError({file, 0, 0, "rotation_x, rotation_y, rotation_z"}, "a mirrored matrix", "a rotation");

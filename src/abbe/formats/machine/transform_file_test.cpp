@@ -44,8 +44,8 @@ TEST(TransformFile, WhatIsNoRotationIsRefused) {
   const std::string header = "rotation_x,rotation_y,rotation_z,translation_mm\n";
   EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n"),
               HasSubstr("2 rows below the header; expected three"));
-  EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n0,0.1,1,3\n"), HasSubstr("no rotation matrix"));
-  EXPECT_THAT(message_of_transform(header + "0,0,0,1\n0,0,0,2\n0,0,0,3\n"), HasSubstr("no rotation matrix"));
+  EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n0,0.1,1,3\n"), HasSubstr("not a rotation matrix"));
+  EXPECT_THAT(message_of_transform(header + "0,0,0,1\n0,0,0,2\n0,0,0,3\n"), HasSubstr("not a rotation matrix"));
   EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n0,0,-1,3\n"), HasSubstr("a mirrored matrix"));
   EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n0,0,one,3\n"), HasSubstr("t.csv:4"));
   EXPECT_THAT(message_of_transform("rotation_x,rotation_y,rotation_z,translation\n"), HasSubstr("translation"));

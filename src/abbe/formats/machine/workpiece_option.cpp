@@ -114,9 +114,10 @@ std::span<const WorkpieceNumber> workpiece_numbers() {
   using Options = WorkpieceOptions;
   static constexpr auto numbers = std::to_array<WorkpieceNumber>({
       {kExpansionOption, &Options::expansion,
-       "Expansion coefficient of a workpiece that has to be right at 20 degC and has another temperature"},
+       "Expansion coefficient of a workpiece that must have the right size at 20 degC but has another temperature"},
       {"--u-workpiece-expansion-um-per-m-K", &Options::u_expansion, "Standard uncertainty of that coefficient"},
-      {kTemperatureOption, &Options::temperature, "Its temperature, the same everywhere; or --workpiece-state"},
+      {kTemperatureOption, &Options::temperature,
+       "Temperature of the workpiece, the same everywhere; or --workpiece-state"},
       {"--u-workpiece-temperature-K", &Options::u_kelvin, "Standard uncertainty of its temperature, K"},
   });
   return numbers;

@@ -57,7 +57,8 @@ void set_arc_by_radius(const NcCodedBlock& block, double radius, const NcAxisVal
                        const ArcAxes& axes, ProgramMove& move) {
   const double along = end[axes.first] - start[axes.first], across = end[axes.second] - start[axes.second];
   const double chord = std::hypot(along, across);
-  if (chord == 0) block.fail('r', "the arc ends where it begins, which its radius does not say", "a centre by I J K");
+  if (chord == 0)
+    block.fail('r', "the arc ends where it begins, so its radius does not determine it", "a centre by I J K");
   const double size = std::abs(radius), half = chord / 2;
   // Source: LinuxCNC 2.9, measured: 0.00127 mm, 0.00005 inch.
   if (half - size > 0.00005 * kInch) {

@@ -145,7 +145,7 @@ void NcBlockReader::refuse_statement(NcCursor& cursor) {
   while (next != cursor.end && *next == ' ') ++next;
   if (next != cursor.end && *next == '[' && name != "if" && name != "while") return;
   cursor.at = at;
-  cursor.fail(begin, "is a statement of another language, or no word",
+  cursor.fail(begin, "is a statement of another language, or not a word",
               "a letter and its value; loops, branches and calls by O words");
 }
 

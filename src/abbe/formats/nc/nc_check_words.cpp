@@ -90,7 +90,7 @@ void check_plane_words(const NcCodedBlock& block, const NcState& state, const Pl
   const NcCode other = block.code(NcGroup::non_modal);
   if ((tilt == 682 || (is_tilted && tilt == 690) || other == 531) && modes.motion >= 730 && modes.motion != 800) {
     block.fail(block.word(other == 531 ? NcGroup::non_modal : NcGroup::tilt),
-               "a canned cycle is in force, which would go on in another plane", "G80 before it");
+               "a canned cycle is in force, which would continue in another plane", "G80 before it");
   }
   if (tilt == 682) {
     const NcWord& word = block.word(NcGroup::tilt);

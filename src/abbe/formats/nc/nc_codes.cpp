@@ -124,7 +124,7 @@ const char* reason(NcCode code) {
       return "rotated coordinates are not handled but for tilted planes by G68.2";
     case 683:
     case 684:
-      return "a tilted plane by where the tool points or by another plane is not handled, only that of G68.2";
+      return "a tilted plane defined by the tool direction or by another plane is not handled, only that of G68.2";
     case 533:
     case 536:
       return "turning to a tilted plane while the tool keeps its place is not handled, only G53.1";

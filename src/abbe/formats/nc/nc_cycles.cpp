@@ -51,7 +51,7 @@ void NcCycles::take_words(const NcCodedBlock& block, NcCode motion, std::size_t 
     block.fail(word, "the time of the dwell is negative");
   const int direction = state_.spindle.direction();
   if (is_tapping(motion) && direction != (motion == 840 ? 3 : 4)) {
-    block.fail(word, "the spindle does not turn as this cycle needs it", motion == 840 ? "M3" : "M4");
+    block.fail(word, "the spindle does not turn as this cycle requires", motion == 840 ? "M3" : "M4");
   }
   if (is_pecking(motion)) {
     take('q', step_);

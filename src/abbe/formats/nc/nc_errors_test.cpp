@@ -38,9 +38,9 @@ TEST(NcErrors, OfCodesThatAreNotHandled) {
   EXPECT_EQ(refusal("G84 X1 Z-1 R2\n"),
             "p.ngc:1:1: G84: a canned cycle without a feed; expected F before or in this block");
   EXPECT_EQ(refusal("F1 M4 G84 X1 Z-1 R2\n"),
-            "p.ngc:1:7: G84: the spindle does not turn as this cycle needs it; expected M3");
+            "p.ngc:1:7: G84: the spindle does not turn as this cycle requires; expected M3");
   EXPECT_EQ(refusal("F1 M3\nT1 M6\nG84 X1 Z-1 R2\n"),
-            "p.ngc:3:1: G84: the spindle does not turn as this cycle needs it; expected M3");
+            "p.ngc:3:1: G84: the spindle does not turn as this cycle requires; expected M3");
   EXPECT_EQ(refusal("G38.2 X1 F1\n"),
             "p.ngc:1:1: G38.2: only the control knows where probing ends; expected a code of docs/nc-programs.md");
   EXPECT_EQ(refusal("G5 X1 I1 J1\n"),
@@ -242,8 +242,9 @@ TEST(NcErrors, OfArcs) {
             "of that");
   EXPECT_EQ(refusal("G2 R5 F1\n"),
             "p.ngc:1:1: G2: an arc by its radius without an end in its plane; expected the end point");
-  EXPECT_EQ(refusal("G2 X0 R5 F1\n"),
-            "p.ngc:1:7: R5: the arc ends where it begins, which its radius does not say; expected a centre by I J K");
+  EXPECT_EQ(
+      refusal("G2 X0 R5 F1\n"),
+      "p.ngc:1:7: R5: the arc ends where it begins, so its radius does not determine it; expected a centre by I J K");
   EXPECT_EQ(refusal("G2 X1 Y0 F1 I0 J0\n"),
             "p.ngc:1:1: G2: an arc of radius zero; expected a centre away from start and end");
   EXPECT_EQ(refusal("G2 I1 P1.5 F1\n"),
@@ -331,9 +332,8 @@ TEST(NcErrors, OfSubroutinesAndLoops) {
   EXPECT_EQ(refusal("M98 P5 G0 X1\n"),
             "p.ngc:1:8: G0: is given together with M98 or M99, which have no other words; expected a block of its own "
             "before it");
-  EXPECT_EQ(
-      refusal("M99\n"),
-      "p.ngc:1:1: M99: M99 outside a subprogram begins the program again without end; expected M2 or M30 at the end");
+  EXPECT_EQ(refusal("M99\n"),
+            "p.ngc:1:1: M99: M99 outside a subprogram restarts the program endlessly; expected M2 or M30 at the end");
 }
 
 TEST(NcErrors, OfProgramsForOtherControls) {

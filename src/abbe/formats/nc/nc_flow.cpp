@@ -228,7 +228,7 @@ void NcFlow::call_subprogram(const NcBlock& block, const NcWord& word, double la
 
 void NcFlow::end_subprogram(const NcBlock& block, const NcWord& word) {
   if (calls_.empty()) {
-    block.fail(word, "M99 outside a subprogram begins the program again without end", "M2 or M30 at the end");
+    block.fail(word, "M99 outside a subprogram restarts the program endlessly", "M2 or M30 at the end");
   }
   leave(block);
 }

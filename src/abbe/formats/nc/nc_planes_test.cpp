@@ -264,7 +264,7 @@ TEST_F(TiltedPlanes, WhatIsNotSimpleIsAnErrorWithLineAndWord) {
       {"G91\nG68.2 X1", "G68.2 in incremental distances"},
       {"G53.1", "there is no tilted plane"},
       {"G68 X0 Y0 R5", "rotated coordinates are not handled"},
-      {"G68.3 X0", "a tilted plane by where the tool points"},
+      {"G68.3 X0", "a tilted plane defined by the tool direction"},
       {"G53.6", "while the tool keeps its place"},
       {"G68.2 J40\nG53.1 P1", "choosing the solution"},
       {"G68.2 J40\nG53.1 X1", "G53.1 with axis words"},

@@ -31,7 +31,7 @@ void require_increasing(const CsvValues& time, std::string_view text, const std:
     throw InputError({file, csv_line(text, row), 0, time.header},
                      at == before ? fmt::format("{:.9g} s stands twice", at)
                                   : fmt::format("{:.9g} s comes behind {:.9g} s", at, before),
-                     "times that increase; a clock that begins anew at midnight counts on");
+                     "times that increase; they must not restart at midnight");
   }
 }
 
@@ -43,12 +43,13 @@ struct NoValue {
 NoValue no_value(const MachineState& state, const StateChannel& channel, const ChannelValue& value, double time) {
   const std::string gap = fmt::format("a gap of {} from {:.9g} s to {:.9g} s", channel.source, value.from, value.to);
   const std::string wider =
-      fmt::format("largest_gap_s of at least {:.9g} for this file if a straight line is right", value.to - value.from);
+      fmt::format("largest_gap_s of at least {:.9g} for this file if a straight line across the gap is acceptable",
+                  value.to - value.from);
   switch (value.status) {
     case ChannelStatus::in_gap:
       return {fmt::format("{} is not known at {:.9g} s, in {}", state.name, time, gap), wider};
     case ChannelStatus::after_gap:
-      return {fmt::format("{} is not known at {:.9g} s, too shortly behind {}", state.name, time, gap),
+      return {fmt::format("{} is not known at {:.9g} s, too soon after {}", state.name, time, gap),
               fmt::format("readings {:.9g} s behind the gap ({:g} time constants), or {}",
                           kLagMemory * state.time_constant, kLagMemory, wider)};
     case ChannelStatus::no_samples:

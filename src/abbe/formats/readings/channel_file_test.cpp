@@ -90,19 +90,17 @@ TEST(ChannelFile, ExtrapolatesNothingAndNamesTheReading) {
 
 TEST(ChannelFile, MissingValuesAreNotBridgedUnlessTheFileMayHaveGaps) {
   const std::string text = "time_s,air_degC,feed\n0,20,1\n50,,1\n100,22,1\n200,22,1\n";
-  EXPECT_EQ(
-      message_of_readings(kThree, channels_of(text)),
-      "r.csv:3: time_min: air is not known at 60 s, in a gap of log.csv from 0 s to 100 s; expected largest_gap_s "
-      "of at least 100 for this file if a straight line is right");
+  EXPECT_EQ(message_of_readings(kThree, channels_of(text)),
+            "r.csv:3: time_min: air is not known at 60 s, in a gap of log.csv from 0 s to 100 s; expected "
+            "largest_gap_s of at least 100 for this file if a straight line across the gap is acceptable");
   ChannelFile bridged;
   bridged.largest_gap_s = 100;
   EXPECT_NEAR(readings_of(kThree, channels_of(text, bridged)).poses.state[kAir][0], 21.2, 1e-14);
   // The lag remembers the gap although the reading is behind it.
   const std::string late = "X_mm,measured_x_mm,measured_y_mm,measured_z_mm,time_s\n1,1,0,0,150\n";
-  EXPECT_THAT(
-      message_of_readings(late, channels_of(text)),
-      HasSubstr("r.csv:2: time_s: column is not known at 150 s, too shortly behind a gap of log.csv from 0 s to "
-                "100 s; expected readings 1800 s behind the gap (3 time constants), or largest_gap_s"));
+  EXPECT_THAT(message_of_readings(late, channels_of(text)),
+              HasSubstr("r.csv:2: time_s: column is not known at 150 s, too soon after a gap of log.csv from 0 s to "
+                        "100 s; expected readings 1800 s behind the gap (3 time constants), or largest_gap_s"));
 }
 
 TEST(ChannelFile, AStateIsGivenInOnePlaceOnly) {
@@ -129,8 +127,7 @@ TEST(ChannelFile, AStateIsGivenInOnePlaceOnly) {
 
 TEST(ChannelFile, TimesIncrease) {
   EXPECT_EQ(message_of_channels("time_s,air_degC\n0,20\n# noon\n5,21\n5,22\n"),
-            "log.csv:5: time_s: 5 s stands twice; expected times that increase; a clock that begins anew at midnight "
-            "counts on");
+            "log.csv:5: time_s: 5 s stands twice; expected times that increase; they must not restart at midnight");
   EXPECT_THAT(message_of_channels("time_s,air_degC\n0,20\n5,21\n4,22\n"),
               HasSubstr("log.csv:4: time_s: 4 s comes behind 5 s"));
 }

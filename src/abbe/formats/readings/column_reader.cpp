@@ -22,7 +22,7 @@
 namespace abbe {
 namespace {
 
-constexpr const char* kIntact = "an undamaged Parquet or Arrow IPC file that stays as it is until the end of the run";
+constexpr const char* kIntact = "an undamaged Parquet or Arrow IPC file that does not change until the end of the run";
 
 std::string python_with_pyarrow() {
   const char* const named = std::getenv(kColumnsPython);

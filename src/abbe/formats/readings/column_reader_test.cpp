@@ -55,8 +55,8 @@ TEST_F(ColumnReaderProcess, IsAskedForColumnsAndRowsOfFilesByNumber) {
 TEST_F(ColumnReaderProcess, SaysWhatIsWrongWithTheFile) {
   answer("read line; printf 'refused 13\\ncolumn X is b'");
   EXPECT_EQ(refusal(),
-            "r.parquet: cannot be read: column X is b; expected an undamaged Parquet or Arrow IPC file that stays as "
-            "it is until the end of the run");
+            "r.parquet: cannot be read: column X is b; expected an undamaged Parquet or Arrow IPC file that does not "
+            "change until the end of the run");
 }
 
 TEST_F(ColumnReaderProcess, SaysHowToGetPyarrow) {

@@ -150,7 +150,7 @@ void ComponentColumns::take_uncertainty(std::string_view text, const std::string
   for (std::size_t row = 0; row < table.rows; ++row) {
     if (inverse_covariance_factor(covariance_of(readings, n, row))) continue;
     throw InputError({file, csv_line(text, row), 0, header}, "the covariance of this reading is not positive definite",
-                     "variances above zero and correlations that go together");
+                     "variances above zero and consistent correlations");
   }
 }
 

@@ -183,7 +183,7 @@ class MeasurementReader {
                  "a positive definite covariance: correlations between -1 and 1");
       }
       fail_row(row, csv_.columns[first].header, "the covariance of this reading is not positive definite",
-               "correlations that go together");
+               "consistent correlations");
     }
   }
 

@@ -203,7 +203,7 @@ TEST(MeasurementFile, RefusesCovariancesOfRangeAndAnglesThatAreNone) {
       "cov_elevation_elevation_arcsec2; expected a positive definite covariance: correlations between -1 and 1");
   EXPECT_EQ(message_of_measurements(start + "1,2,3,1500,90,10,25,4,1,9,4.5,-1.8\n"),
             "r.csv:2: cov_range_range_um2: the covariance of this reading is not positive definite; expected "
-            "correlations that go together");
+            "consistent correlations");
   EXPECT_EQ(message_of_measurements(start + "1,2,3,1500,90,10,25,-4,1,0,0,0\n"),
             "r.csv:2:21: cov_azimuth_azimuth_arcsec2: is -4; expected a squared angle in arcsec2 above zero");
   EXPECT_EQ(

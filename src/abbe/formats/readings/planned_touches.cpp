@@ -80,7 +80,7 @@ std::string difference(const Machine& machine, const PlannedTouch& touch, const 
     const Axis& axis = machine.axes[i];
     const double off = (pose[i] - touch.pose[i]) / position_unit(axis);
     if (axis.kind == AxisKind::rotary && std::abs(off) > kSameAsPlanned) {
-      return fmt::format("axis {} stands {:.4f} degrees from where it should", axis.name, off);
+      return fmt::format("axis {} is {:.4f} degrees from where it should be", axis.name, off);
     }
     if (axis.kind == AxisKind::linear) squared += off * off;
   }

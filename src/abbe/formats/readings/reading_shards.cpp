@@ -216,7 +216,7 @@ InstrumentReadings ReadingShards::Implementation::read_part(const ShardPart& par
     const InputError changed(
         {.file = file.path().string(), .line = 2},
         fmt::format("one of {} rows from here on has changed since the file was read first", part.count),
-        "a file that stays as it is until the end of the run");
+        "a file that does not change until the end of the run");
     throw file.placed(changed, part);
   }
   return parse(part, text).readings;

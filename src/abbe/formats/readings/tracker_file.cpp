@@ -57,8 +57,8 @@ TrackerReadings readings_from_table(const MeasurementTable& table, const std::st
     if (has_offset && !from_data && !reflector.estimate_offset &&
         (table.reflector_offset[i] - reflector.offset).norm() > kSameOffset) {
       contradictions.push_back(fmt::format(
-          "the offset of reflector {} is ({}) mm in {} and ({}) mm in the study, which counts (offset = \"from-data\": "
-          "that of the file)",
+          "the offset of reflector {} is ({}) mm in {} and ({}) mm in the study, which is used (offset = \"from-data\" "
+          "uses that of the file)",
           reflector.name, fmt::join(table.reflector_offset[i], ", "), file, fmt::join(reflector.offset, ", ")));
     }
     reflector_index.push_back(static_cast<std::uint16_t>(index));

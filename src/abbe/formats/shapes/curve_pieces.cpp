@@ -9,8 +9,8 @@ namespace abbe {
 std::vector<CommandPiece> commanded_pieces(const Curve& curve, const std::string& file, const std::string& closed) {
   const std::vector<WorkingRun> runs = working_runs(curve);
   if (runs.empty()) {
-    throw InputError({.file = file}, "the tool works on the way to none of its points",
-                     "a curve of two points or more between which it works");
+    throw InputError({.file = file}, "the tool does not cut on the way to any of its points",
+                     "a curve of two points or more between which it cuts");
   }
   if (!closed.empty() && runs.size() > 1) {
     throw InputError({.field = closed}, fmt::format("the tool works on {} pieces of the curve", runs.size()),

@@ -132,7 +132,7 @@ TEST(DamagedE57, SectionsSayWhatIsWrong) {
               HasSubstr("scan 1: recordCount: 5 points are stated, but cartesianX has 19 bytes for them; expected 32 "
                         "bits for each"));
   EXPECT_EQ(e57_message(with_number(good, 80 + 44 + 1, 1, 1)),
-            "a.e57: scan 1: points: at byte 125: the streams begin anew; expected streams that go on through all "
+            "a.e57: scan 1: points: at byte 125: the streams begin anew; expected streams that continue through all "
             "packets, as known programs write them");
 }
 

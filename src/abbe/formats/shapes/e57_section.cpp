@@ -186,7 +186,7 @@ std::uint64_t E57Section::packet_length(std::uint64_t at) const {
   }
   if (kPacketHeader + 2 * streams > length) fail(at + 2, fmt::format("a packet of {} bytes", length), "more");
   if ((pages_.number<std::uint8_t>(at + 1) & kRestarts) != 0 && !packets_.empty()) {
-    fail(at + 1, "the streams begin anew", "streams that go on through all packets, as known programs write them");
+    fail(at + 1, "the streams begin anew", "streams that continue through all packets, as known programs write them");
   }
   return length;
 }

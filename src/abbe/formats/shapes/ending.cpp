@@ -130,7 +130,7 @@ void refuse_contents(const std::string& file, std::string_view contents, std::st
   throw InputError({.file = file},
                    found == nullptr ? std::string("its kind cannot be recognised from its contents")
                                     : fmt::format("begins like {}", found->name),
-                   fmt::format("{} that begins like {}; or give the name of a file, whose extension tells its kind",
+                   fmt::format("{} that begins like {}; or give the name of a file, whose extension shows its kind",
                                expected, list));
 }
 

@@ -79,7 +79,7 @@ TEST(EndingOfContents, ARefusalSaysWhatItIsAndWhatTheRightKindsBeginWith) {
   };
   EXPECT_EQ(message("hello"),
             "<stdin>: its kind cannot be recognised from its contents; expected a mesh that begins like a PLY file "
-            "('ply') or an OBJ file ('v X Y Z'); or give the name of a file, whose extension tells its kind");
+            "('ply') or an OBJ file ('v X Y Z'); or give the name of a file, whose extension shows its kind");
   EXPECT_THAT(message("1 2 3"), HasSubstr("<stdin>: begins like an XYZ file; expected a mesh"));
 }
 

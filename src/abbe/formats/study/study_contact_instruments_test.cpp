@@ -252,7 +252,7 @@ TEST(StudyContactInstruments, ReadAPoseTracker) {
   EXPECT_SAYS(message_of_setup_with(kPoseTracker, "name = \"frame\"", "name = \"frame\"\nmounted_on = \"workpiece\""),
               "the target and the instrument are on the same body");
   EXPECT_SAYS(message_of_setup_with(kPoseTracker, "angles_deg = [0, 0, 180]\n", "estimate_angles = false\n"),
-              "angles that are not estimated have to be given");
+              "angles that are not estimated must be given");
   EXPECT_SAYS(message_of_setup_with(kPoseTracker, "[[setup.target]]", "[[setup.reflector]]"),
               "it is not said what is seen");
 }

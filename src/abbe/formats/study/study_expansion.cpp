@@ -57,7 +57,7 @@ void read_identified_expansions(TomlTable& identify, const Machine& machine, con
     expansion.standard_uncertainty = coefficient.standard_uncertainty;
     if (!expansion.thermometer.empty() && !(expansion.temperature_uncertainty > 0)) {
       table.fail("temperature_standard_uncertainty_K", "is missing or zero beside a thermometer",
-                 "what the temperature of this scale is wrong by besides what its thermometer shares");
+                 "the temperature error of this scale besides the one that its thermometer shares");
     }
     if (expansion.temperature_uncertainty > 0 && coefficient.knowledge == Knowledge::open) {
       table.fail_quantity("temperature_standard_uncertainty", Quantity::temperature_difference,

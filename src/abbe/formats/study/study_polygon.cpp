@@ -167,7 +167,7 @@ void read_steps(TomlTable& table, bool simulated, PolygonGaugeSetup& setup) {
     const PolygonGaugeSetup::Step& first = setup.steps.front();
     if (step.measured.size() != first.measured.size() || has_angle(step) != has_angle(first)) {
       entry.fail("", "measures other kinds of readings than the first step",
-                 "autocollimator in every step or in none, and so displacement");
+                 "autocollimator in every step or in none, and likewise displacement");
     }
   }
 }

@@ -27,7 +27,7 @@ PoseTrackerSetup::Target read_target(TomlTable& table, bool simulated) {
   target.rotation = given.value_or(Eigen::Matrix3d::Identity());
   target.estimate_rotation = table.boolean_or("estimate_angles", true);
   if (!target.estimate_rotation && !given) {
-    table.fail("estimate_angles", "angles that are not estimated have to be given", "angles_deg = [a, b, c]");
+    table.fail("estimate_angles", "angles that are not estimated must be given", "angles_deg = [a, b, c]");
   }
   target.true_rotation = rotation("true_angles");
   if (target.true_rotation && !simulated) {

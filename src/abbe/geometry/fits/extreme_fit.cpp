@@ -56,7 +56,7 @@ class Exchange {
       if (!reached.answer.converged) {
         reached.reason = extreme_ == ExtremeKind::inscribed
                              ? "no largest shape within the points was reached: do they surround it?"
-                             : "no place with the conditions of the optimum was reached";
+                             : "no point that meets the conditions of the optimum was reached";
         return reached;
       }
       reached.frame = reached.answer.frame;

@@ -290,7 +290,7 @@ Decoupling decouple_indications(const AxisIndications& readings, AngleDatum datu
   for (const DatumTerm& term : linear ? linear_datum(readings, result, datum) : rotary_datum(readings, result)) {
     if (term.functions.rows() <= term.functions.cols()) {
       result.status = DecouplingStatus::too_few_positions;
-      result.message = fmt::format("{} positions; the datum takes all that is seen of {}", m,
+      result.message = fmt::format("{} positions; the datum removes everything that is seen of {}", m,
                                    name_of(readings, term.components.front()));
       result.seen.fill(false);
       return result;
@@ -311,9 +311,10 @@ Decoupling decouple_indications(const AxisIndications& readings, AngleDatum datu
   note_unseen(readings, result);
   const double span = readings.positions.back() - readings.positions.front();
   if (!linear && span < std::numbers::pi) {
-    result.notes.push_back(fmt::format(
-        "over {:.0f} deg of travel the eccentricity of the mandrel takes part of the slow error motion with it",
-        span / kDegree));
+    result.notes.push_back(
+        fmt::format("over {:.0f} deg of travel, removing the eccentricity of the mandrel also removes part of the slow "
+                    "error motion",
+                    span / kDegree));
   }
   result.status = DecouplingStatus::ok;
   return result;

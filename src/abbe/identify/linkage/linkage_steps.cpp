@@ -110,7 +110,7 @@ LinkageEvaluation evaluate_steps(const LinkageReadings& r) {
     if (fit_arm(r.table_angle, -1, r.circle_marks, reversed, misfit_reversed) &&
         misfit > std::max(kReversedMisfit * misfit_reversed, 1e-9)) {
       return refused(LinkageStatus::circle_reversed,
-                     "the marks of the circle go round against the stated angles: their sign is wrong");
+                     "the marks of the circle run opposite to the stated angles: their sign is wrong");
     }
   }
   result.status = LinkageStatus::ok;

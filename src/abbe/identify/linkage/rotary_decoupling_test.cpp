@@ -130,7 +130,7 @@ TEST(RotaryDecoupling, ThreePositionsOfOneDialAreAllDatum) {
   readings.indications = Eigen::MatrixXd::Constant(3, 1, 0.001);
   const Decoupling result = decouple_indications(readings);
   EXPECT_EQ(result.status, DecouplingStatus::too_few_positions);
-  EXPECT_EQ(result.message, "3 positions; the datum takes all that is seen of EXC");
+  EXPECT_EQ(result.message, "3 positions; the datum removes everything that is seen of EXC");
   EXPECT_EQ(result.errors.size(), 0);
 }
 

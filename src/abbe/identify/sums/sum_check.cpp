@@ -34,7 +34,7 @@ void check_sum(const SumOfReadings& sum, const SumRequest& request, const Proble
     refuse(fmt::format("is of another problem: {} pieces instead of {}", sum.pieces, pieces.size()));
   if (sum.range.first != 0 || sum.range.last != pieces.size() || sum.readings.size() != pieces.size() ||
       sum.values.size() != pieces.size())
-    refuse(fmt::format("is not whole: it begins with piece {} and ends before piece {} of {}", sum.range.first,
+    refuse(fmt::format("is incomplete: it begins with piece {} and ends before piece {} of {}", sum.range.first,
                        sum.range.last, pieces.size()));
   if (sum.processor != vector_instructions())
     refuse(

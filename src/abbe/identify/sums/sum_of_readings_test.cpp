@@ -241,7 +241,7 @@ TEST(SumOfReadings, OfAnotherProblemOrPointIsRefusedByTheIdentification) {
   EXPECT_THAT(refusal([&](const SumRequest& r, const std::stop_token&) {
                 return good.sum(r, {0, 14});
               }),
-              HasSubstr("is not whole: it begins with piece 0 and ends before piece 14 of 15"));
+              HasSubstr("is incomplete: it begins with piece 0 and ends before piece 14 of 15"));
   EXPECT_THAT(refusal([&](const SumRequest& r, const std::stop_token&) {
                 SumRequest elsewhere = r;
                 elsewhere.point.setups[0][0] += 0.1;

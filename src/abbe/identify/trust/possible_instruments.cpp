@@ -265,8 +265,8 @@ class FurtherInstruments {
       place_polygon(machine_, placement, setup);
       const auto gauge = std::make_shared<PolygonGauge>(setup);
       const InstrumentReadings planned = polygon_plan(machine_, *gauge, i, first);
-      add_trial(fmt::format("a polygon prism on the table, put on twice, with autocollimators and displacement sensors "
-                            "on the bed while {} turns",
+      add_trial(fmt::format("a polygon prism on the table, mounted twice, with autocollimators and displacement "
+                            "sensors on the bed while {} turns",
                             axis.name),
                 gauge, planned);
     } catch (const std::invalid_argument&) {

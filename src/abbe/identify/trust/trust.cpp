@@ -94,8 +94,8 @@ std::optional<Distrust> distrust_of_held_out(const HeldOutErrors& errors) {
               "that, as on a machine whose errors are smaller than these";
   return Distrust{
       worse ? DistrustKind::worse_held_out : DistrustKind::no_improvement,
-      fmt::format("at poses that took no part in the fit the root mean square error is {:.4g} um after the correction "
-                  "and {:.4g} um before, {}",
+      fmt::format("at poses that were not used in the fit, the root mean square error is {:.4g} um after the "
+                  "correction and {:.4g} um before, {}",
                   after, before, why),
       {{"rms_before_um", before},
        {"rms_after_um", after},

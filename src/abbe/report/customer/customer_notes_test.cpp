@@ -63,7 +63,7 @@ TEST(CustomerNotes, WordsStandInThePlacesOfOthers) {
       "ein.");
   EXPECT_EQ(german("Section 7 is not evaluated: left edge: fewer than 20 points."),
             "Schnitt 7 ist nicht ausgewertet: linke Kante: weniger als 20 Punkte.");
-  EXPECT_EQ(german("air was not read for 2 h 30 min: what it did in between is taken as a straight line."),
+  EXPECT_EQ(german("air was not read for 2 h 30 min: it is interpolated linearly in between."),
             "air wurde 2 h 30 min lang nicht abgelesen: Der Verlauf dazwischen gilt als gerade Linie.");
   EXPECT_EQ(german("tau_Z: no change beyond the scatter of the readings."),
             "tau_Z: keine Änderung über die Streuung der Messwerte hinaus.");

@@ -23,8 +23,8 @@ constexpr NoteWord kEvaluationNotes[] = {
       "未给出膨胀系数和温度的不确定度：到 20 °C 的修正视为准确。",
       "膨張係数及び温度の不確かさの記載がありません：20 °C への補正は正確とみなします。"}},
     // Circular tests.
-    {"Some causes make the same pattern on these readings and are not told apart: both directions of a full circle "
-     "show squareness and servo mismatch apart, a full circle shows scales and centre apart.",
+    {"Some causes make the same pattern in these readings and cannot be separated: squareness and servo mismatch need "
+     "both directions of a full circle, scales and centre need a full circle.",
      {"Einige Ursachen erzeugen bei diesen Messwerten dasselbe Muster und sind nicht zu unterscheiden: Beide "
       "Richtungen "
       "eines Vollkreises trennen Rechtwinkligkeit und Unterschied der Schleppabweichungen, ein Vollkreis trennt "
@@ -33,7 +33,7 @@ constexpr NoteWord kEvaluationNotes[] = {
       "心。",
       "一部の原因はこれらの測定値で同じ模様となり、区別できません：全円の両方向により直角度と追従誤差の差を、全円によ"
       "りスケール誤差と中心を区別できます。"}},
-    {"Readings within {}° of a reversal of an axis take no part in the causes.",
+    {"Readings within {}° of a reversal of an axis are not used for the causes.",
      {"Messwerte im Bereich von {0}° um die Umkehr einer Achse gehen nicht in die Ursachen ein.",
       "轴线换向点 {0}° 以内的读数不参与原因分析。", "軸の反転点から {0}° 以内の測定値は原因の分析に用いません。"}},
     {"What the causes leave follows a pattern of its own: {} readings count as one in their uncertainties.",
@@ -166,7 +166,7 @@ constexpr NoteWord kEvaluationNotes[] = {
      {"Aufnehmer in zwei Ebenen zeigen Neigungen, wenn der Abstand der Ebenen angegeben ist (--plane-distance-mm).",
       "给出两个平面的距离（--plane-distance-mm）后，两个平面内的传感器可显示倾斜。",
       "二平面の距離（--plane-distance-mm）を示せば、二平面の変位計から傾きが求まります。"}},
-    {"{} was not read for {}: what it did in between is taken as a straight line.",
+    {"{} was not read for {}: it is interpolated linearly in between.",
      {"{0} wurde {1} lang nicht abgelesen: Der Verlauf dazwischen gilt als gerade Linie.",
       "{0} 有 {1} 没有读数：其间的变化视为直线。",
       "{0} は {1} の間読み取られていません：その間の変化は直線とみなします。"}},
@@ -184,7 +184,7 @@ constexpr NoteWord kEvaluationNotes[] = {
       "Unsicherheit eines Messwerts; der größere Wert gilt.",
       "时间常数的不确定度为拟合的不确定度，由残差或所给读数不确定度得出，取较大者。",
       "時定数の不確かさは当てはめの不確かさで、残差又は示された測定値の不確かさのうち大きい方によります。"}},
-    {"The targets were not read during one time: the change of their distance is not known, nor an expansion.",
+    {"The targets were not read over a common time: neither the change of their distance nor an expansion is known.",
      {"Die Zielpositionen wurden nicht im selben Zeitraum abgelesen: Die Änderung ihres Abstands ist nicht bekannt, "
       "auch keine Ausdehnung.",
       "各目标位置的读数不在同一时段：其距离的变化未知，膨胀亦未知。",
@@ -236,7 +236,7 @@ constexpr NoteWord kNoteArguments[] = {
      {"eine Bahn hat keinen Ausgleichskreis", "某一轨迹没有最小二乘圆", "最小二乗円のない経路があります"}},
     {"too few readings", {"zu wenige Messwerte", "读数过少", "測定値が少なすぎます"}},
     {"the length is not calibrated", {"die Länge ist nicht kalibriert", "长度未校准", "長さが校正されていません"}},
-    {"not told from the other causes by these readings",
+    {"these readings do not separate it from the other causes",
      {"mit diesen Messwerten nicht von den anderen Ursachen zu unterscheiden", "由这些读数无法与其他原因区分",
       "これらの測定値では他の原因と区別できません"}},
     {"not run", {"nicht ausgeführt", "未执行", "実行していません"}},
@@ -272,7 +272,7 @@ constexpr NoteWord kNoteArguments[] = {
       "半分の深さより下に連続した 3 点がありません"}},
     {"coordinates that are not finite",
      {"Koordinaten, die nicht endlich sind", "坐标不是有限值", "有限でない座標があります"}},
-    {"the corner of the section did not come to rest",
+    {"the fit of the corner of the section did not converge",
      {"die Ecke des Schnitts kam nicht zur Ruhe", "截面的拐角未收敛", "断面の角が収束しません"}},
     {"neither the wall nor four points of the rounding are seen",
      {"weder die Wand noch vier Punkte der Verrundung sind zu sehen", "既看不到侧壁，也看不到圆角上的四个点",
@@ -328,8 +328,8 @@ constexpr NoteWord kNoteArguments[] = {
       "残差は記載された測定値の不確かさで説明できる大きさの {0} 倍です（カイ二乗 {1}、自由度 {2}、確率 {3} "
       "未満）：測定値に現れた誤差がモデルにないか、設置若しくは機械の数値が誤っているか、測定値が記載より不確かです。"
       "結果に記載された不確かさは小さすぎます"}},
-    {"at poses that took no part in the fit the root mean square error is {} um after the correction and {} um before, "
-     "which neither noise nor the uncertainty of the identified errors explains (probability below {}): the "
+    {"at poses that were not used in the fit, the root mean square error is {} um after the correction and {} um "
+     "before, which neither noise nor the uncertainty of the identified errors explains (probability below {}): the "
      "identified errors make the machine worse",
      {"an Posen, die nicht in die Ausgleichung eingingen, beträgt die Abweichung (quadratisches Mittel) {0} µm nach "
       "der "
@@ -340,9 +340,9 @@ constexpr NoteWord kNoteArguments[] = {
       "当てはめに用いなかった姿勢での誤差の二乗平均平方根は補正後 {0} µm、補正前 {1} "
       "µm で、雑音でも同定した誤差の不確かさでも説明できません（確率 {2} "
       "未満）：同定した誤差は機械を悪化させます"}},
-    {"at poses that took no part in the fit the root mean square error is {} um after the correction and {} um before, "
-     "so the correction shows no improvement. Noise and the uncertainty of the identified errors may explain that, as "
-     "on a machine whose errors are smaller than these",
+    {"at poses that were not used in the fit, the root mean square error is {} um after the correction and {} um "
+     "before, so the correction shows no improvement. Noise and the uncertainty of the identified errors may explain "
+     "that, as on a machine whose errors are smaller than these",
      {"an Posen, die nicht in die Ausgleichung eingingen, beträgt die Abweichung (quadratisches Mittel) {0} µm nach "
       "der "
       "Korrektur und {1} µm davor; die Korrektur bringt also keine Verbesserung. Rauschen und die Unsicherheit der "

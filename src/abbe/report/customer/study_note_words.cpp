@@ -144,7 +144,7 @@ constexpr NoteWord kStudyNotes[] = {
     {"The stated uncertainties of the result do not fit them.",
      {"Die angegebenen Unsicherheiten des Ergebnisses passen nicht dazu.", "结果所给的不确定度与之不符。",
       "結果に記載された不確かさはこれに合いません。"}},
-    {"outliers stand together: {} (by chance with a probability of {}).",
+    {"outliers are clustered: {} (by chance with a probability of {}).",
      {"Ausreißer liegen beieinander: {0} (zufällig mit einer Wahrscheinlichkeit von {1}).",
       "异常值聚集：{0}（偶然出现的概率为 {1}）。", "外れ値が集まっています：{0}（偶然である確率 {1}）。"}},
     {"Something was different there, or the model does not hold.",

@@ -144,7 +144,8 @@ EvaluationReport axis_distortion_report(const std::string& file, const AxisDisto
   add_thermal_notes(is_stated, false, all, report);
   if (distortion.expansions.empty()) {
     report.notes.push_back(
-        "The targets were not read during one time: the change of their distance is not known, nor an expansion.");
+        "The targets were not read over a common time: neither the change of their distance nor an expansion is "
+        "known.");
   }
   add_axis_targets(distortion, report);
   add_axis_plots(distortion, report);

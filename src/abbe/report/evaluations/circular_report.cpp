@@ -152,7 +152,7 @@ void add_causes(const CircularRequest& request, const CircularDiagnosis& diagnos
     } else {
       entry.missing = is_scale && !request.diagnosis.length_calibrated
                           ? "the length is not calibrated"
-                          : "not told from the other causes by these readings";
+                          : "these readings do not separate it from the other causes";
       any_missing = any_missing || !is_scale || request.diagnosis.length_calibrated;
     }
     report.figures.push_back(std::move(entry));
@@ -175,17 +175,17 @@ void add_causes(const CircularRequest& request, const CircularDiagnosis& diagnos
                                  {"correlation_length", diagnosis.correlation_length}};
   if (any_missing) {
     report.notes.push_back(
-        "Some causes make the same pattern on these readings and are not told apart: both directions of a full circle "
-        "show squareness and servo mismatch apart, a full circle shows scales and centre apart.");
+        "Some causes make the same pattern in these readings and cannot be separated: squareness and servo mismatch "
+        "need both directions of a full circle, scales and centre need a full circle.");
   }
   if (request.diagnosis.reversal_margin > 0) {
     report.notes.push_back(
-        fmt::format("Readings within {:g}\xC2\xB0 of a reversal of an axis take no part in the causes.",
+        fmt::format("Readings within {:g}\xC2\xB0 of a reversal of an axis are not used for the causes.",
                     request.diagnosis.reversal_margin * kPerDegree));
   }
   if (diagnosis.correlation_length > 5) {
     report.notes.push_back(fmt::format(
-        "What the causes leave follows a pattern of its own: {:.0f} readings count as one in their uncertainties.",
+        "The residuals of the causes follow a pattern of their own: {:.0f} readings count as one in the uncertainties.",
         diagnosis.correlation_length));
   }
 }

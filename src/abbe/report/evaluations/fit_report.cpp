@@ -170,10 +170,10 @@ void add_notes(EvaluationReport& report, const FitRequest& request, const ShapeF
         "Uncertainties from {:.3g} \xC2\xB5m of each point, errors of the points independent of each other{}.",
         1e3 * fit.sigma, extreme ? "; to first order, the points that touch staying the same" : ""));
   } else {
-    report.notes.push_back(fmt::format(
-        "Uncertainties from the scatter of the points, {:.3g} \xC2\xB5m, as if their errors were independent "
-        "of each other: form deviation, and what many points have in common, does not average out.",
-        1e3 * fit.sigma));
+    report.notes.push_back(
+        fmt::format("Uncertainties from the scatter of the points, {:.3g} \xC2\xB5m, as if their errors were "
+                    "independent of each other: form deviation, and errors common to many points, do not average out.",
+                    1e3 * fit.sigma));
   }
   if (extreme && fit.contacts.empty()) {
     report.notes.emplace_back(

@@ -86,8 +86,8 @@ EvaluationReport location_distortion_report(const std::string& file, const Locat
   }
   add_thermal_notes(true, false, {&distortion.locations.front().sensor.series}, report);
   report.notes.push_back(
-      "The other errors of the machine are held at their values from all readings, and do not take part in the "
-      "uncertainties, which are those of changes. What is open of a set-up is found anew in every cycle.");
+      "The other errors of the machine are held at their values from all readings and are not included in the "
+      "uncertainties, which are those of changes. Open quantities of a set-up are found again in every cycle.");
   report.notes.insert(report.notes.end(), left_out.begin(), left_out.end());
   add_warming_sensors(distortion.locations, kLocationWords, "locations", report);
   add_fit(distortion, report);

@@ -128,8 +128,8 @@ void add_thermal_notes(bool is_stated, bool lacks_distance, const std::vector<co
     longest = one;
   }
   if (longest != nullptr) {
-    report.notes.push_back(fmt::format("{} was not read for {}: what it did in between is taken as a straight line.",
-                                       longest->name, duration_words(gap)));
+    report.notes.push_back(fmt::format("{} was not read for {}: it is interpolated linearly in between.", longest->name,
+                                       duration_words(gap)));
   }
 }
 

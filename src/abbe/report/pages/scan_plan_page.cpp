@@ -161,7 +161,7 @@ nlohmann::json scan_plan_page_data(const Machine& machine, const TriangleMesh& p
   report.tables.push_back(faces_table(plan));
   report.notes.emplace_back(
       "A piece of the surface counts as covered if a measured point of its own face lies within three quarters of the "
-      "diagonal of the two distances; shares are of the area, colours of what most of a triangle's pieces are.");
+      "diagonal of the two distances; shares are by area, and the colour of a triangle is that of most of its pieces.");
   if (plan.faces.size() > kFacesInTable) {
     report.notes.push_back(fmt::format("The table shows {} of {} faces.", kFacesInTable, plan.faces.size()));
   }

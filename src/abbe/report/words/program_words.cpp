@@ -85,8 +85,7 @@ std::string reversals_text(const Machine& machine, const CorrectedProgram& resul
     }
     if (axis.value > 0) {
       text += fmt::format(
-          "  above zero it is no lost motion: where {} turns round, the motion that takes it up moves the axis "
-          "itself\n",
+          "  a value above zero is not lost motion: where {} reverses, the take-up motion moves the axis itself\n",
           machine.axes[axis.axis].name);
     }
   }
@@ -118,8 +117,8 @@ struct NamedStatus {
   const char* text;
 };
 constexpr NamedStatus kStatuses[] = {
-    {CorrectionStatus::orientation_left, "the point is reached, the machine cannot turn the orientation error away"},
-    {CorrectionStatus::turn_limited, "near a singularity the turn is bounded, some orientation error stays"},
+    {CorrectionStatus::orientation_left, "the point is reached, but the machine cannot correct the orientation error"},
+    {CorrectionStatus::turn_limited, "near a singularity the turn is bounded, so some orientation error remains"},
     {CorrectionStatus::position_left, "the machine does not reach the point"},
     {CorrectionStatus::outside_travel, "the corrected position is outside the travel and was kept at its end"},
     {CorrectionStatus::not_covered, "the errors are not known there"},
@@ -192,8 +191,8 @@ std::vector<std::string> reasons_to_refuse(double limit_um, const AllowedProblem
           1e3 * report.largest_bend.value),
       "not-proven", {}, "move");
   add(report.play_with_spindle, false,
-      "threads or taps in which axes with reversal values turn round, which cannot be taken up there (where they "
-      "turn round for a correction only, a larger --reversal-dead-band-um)",
+      "threads or taps in which axes with reversal values reverse, which cannot be taken up there (where they reverse "
+      "only for a correction, use a larger --reversal-dead-band-um)",
       nullptr, {}, "move");
   add(report.not_proven, allowed.not_proven, "path between corrected poses not proven to stay within the tolerance",
       "not-proven", {}, "move");

@@ -9,9 +9,9 @@ const char* obstacle_words(ScanObstacle obstacle) {
     case ScanObstacle::angle:
       return "seen only at more than the largest angle from the normal";
     case ScanObstacle::hidden:
-      return "hidden by the part or the stage from everywhere";
+      return "hidden by the part or the stage from all directions";
     case ScanObstacle::working_distance:
-      return "the probe would touch, with twice its working distance it would not";
+      return "the probe would touch; with twice its working distance it would not";
     case ScanObstacle::collision:
       return "the probe would touch the part or the stage";
     case ScanObstacle::travel:

@@ -167,8 +167,8 @@ void add_notes_on_missing_errors(const ComparedCampaigns& result, EvaluationRepo
     if (!pair.partial.is_partial() || pair.partial.missing_names() == before) continue;
     before = pair.partial.missing_names();
     report.notes.push_back(
-        fmt::format("{}: {} that move the tool against the workpiece are in both campaigns. What has changed in the "
-                    "others is in no figure: {}.",
+        fmt::format("{}: {} that move the tool against the workpiece are in both campaigns. Changes of the others are "
+                    "in no figure: {}.",
                     pair_words(pair), pair.partial.short_words(), before));
   }
 }
@@ -186,10 +186,10 @@ void add_notes_on_functions(const ComparedCampaigns& result, EvaluationReport& r
       }
     }
     if (names.empty()) continue;
-    report.notes.push_back(fmt::format(
-        "{}: an error motion with more functions in one campaign is compared in the functions of the other. What only "
-        "one can describe is no change: {}.",
-        pair_words(pair), first_few(names, "; ")));
+    report.notes.push_back(
+        fmt::format("{}: an error motion with more functions in one campaign is compared in the functions of the "
+                    "other. What only one can describe does not count as a change: {}.",
+                    pair_words(pair), first_few(names, "; ")));
   }
 }
 
@@ -221,8 +221,8 @@ void add_notes(const CompareRequest& request, ComparedCampaigns& result) {
         "most {:g} % that any error of a pair is called changed if none has changed and the uncertainties are right.",
         100 * result.level, 100 * result.level));
     report.notes.push_back(
-        "The campaigns are taken as independent. Uncertainties that they share, as of one laser or one artefact, "
-        "cancel in a change, which is then known better than stated.");
+        "The campaigns are taken as independent. Uncertainties that they share, such as that of one laser or one "
+        "artefact, cancel in a change, which is then known better than stated.");
   }
   report.notes.push_back(
       "A change is stated where its amount is largest over the range; its probability is that of the whole function.");

@@ -43,7 +43,7 @@ std::string corrected_robot_text(const RobotProgramRequest& request, const Corre
     const std::size_t turned = largest_of(result, [](const auto& p) { return p.orientation_left; });
     text += fmt::format("largest correction of the functional point {:.3f} um, {}\n",
                         1e3 * result.positions[shifted].shift, place(shifted));
-    text += fmt::format("left by the digits that are written: at most {:.3f} um, {}; {:.3f} urad, {}\n",
+    text += fmt::format("rounding of the written digits: at most {:.3f} um, {}; {:.3f} urad, {}\n",
                         1e3 * result.positions[left].position_left, place(left),
                         1e6 * result.positions[turned].orientation_left, place(turned));
   }

@@ -75,11 +75,13 @@ std::string frozen_errors_text(const FrozenErrors& result, const FrozenOutput& f
   }
   text += fmt::format("  iterations of one call: at most {}\n", frozen.worst_iterations);
   if (frozen.limited > 0)
-    text += fmt::format("  near singularities the turn is bounded: at {} poses a part of the orientation error stays\n",
-                        frozen.limited);
+    text +=
+        fmt::format("  near singularities the turn is bounded: at {} poses a part of the orientation error remains\n",
+                    frozen.limited);
   if (frozen.unreached > 0)
-    text += fmt::format("  the axes cannot take all of the error of the point: at {} of {} poses a part of it stays\n",
-                        frozen.unreached, frozen.poses);
+    text +=
+        fmt::format("  the axes cannot correct all of the error of the point: at {} of {} poses a part of it remains\n",
+                    frozen.unreached, frozen.poses);
   return text + linuxcnc_backlash_text(machine, result.errors);
 }
 

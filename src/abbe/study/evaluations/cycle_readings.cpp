@@ -27,7 +27,7 @@ std::vector<TimedReading> readings_in_time(const Campaign& campaign, const std::
     }
     if (setup.drift) {
       throw InputError({.file = file, .field = setup.name + ".drift"},
-                       "a set-up that drifts: what is open of a set-up is found anew in every cycle",
+                       "a set-up that drifts: open quantities of a set-up are found again in every cycle",
                        "a study without drift");
     }
     for (std::size_t k = 0; k < setup.reading_count(); ++k) all.push_back({setup.readings.time_s[k], s, k});

@@ -74,7 +74,8 @@ TEST(EvaluationOfALinkage, TheConventionIsThatOfTheMachineOrAsStated) {
 TEST(EvaluationOfALinkage, WhatDeterminesNoneIsNamed) {
   LinkageTest test = example_linkage();
   for (double& angle : test.readings.table_angle) angle = -angle;
-  EXPECT_THAT(linkage_problem(test), testing::StartsWith("folder/steps.csv: turn: the marks of the circle go round "));
+  EXPECT_THAT(linkage_problem(test),
+              testing::StartsWith("folder/steps.csv: turn: the marks of the circle run opposite "));
   test = example_linkage();
   test.readings.focus_z.resize(3);
   test.readings.focus_width.resize(3);

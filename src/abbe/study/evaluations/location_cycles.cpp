@@ -171,7 +171,7 @@ LocationErrorsOverTime location_errors_over_time(const Study& study, const Campa
   std::string first = result.left_out.front();
   first.pop_back();
   throw InputError({.file = file}, "fewer than two cycles determine the location errors. " + first,
-                   "in every cycle all poses that the study needs; --cycle-min and --pause-min say what a cycle is");
+                   "in every cycle all poses that the study needs; --cycle-min and --pause-min define the cycles");
 }
 
 }  // namespace abbe

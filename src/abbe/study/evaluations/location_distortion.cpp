@@ -28,7 +28,7 @@ WarmingRun heating_of(const LocationDistortionTest& test, const LocationErrorsOv
     throw InputError(
         {.file = file, .field = option},
         fmt::format("the heating stops at {:.6g} min and starts at {:.6g} min", minutes(run.stop), minutes(run.start)),
-        "a stop after the start, as the readings count their time");
+        "a stop after the start, on the time scale of the readings");
   }
   if (run.start >= first.from && run.start <= last.to && run.stop <= last.to) return run;
   throw InputError({.file = file, .field = run.stop > last.to ? "--stop-min" : "--start-min"},

@@ -99,7 +99,7 @@ WarmingRun run_of(const SpindleDistortionTest& test, const std::string& file) {
     throw InputError(
         {.file = file, .field = is_stated(test.stop) ? "--stop-min" : "--start-min"},
         fmt::format("the spindle stops at {:.6g} min and starts at {:.6g} min", run.stop / 60, run.start / 60),
-        "a stop after the start, as the file counts its time");
+        "a stop after the start, on the time scale of the file");
   }
   const std::string unread = unread_sensor(test.readings, run);
   if (unread.empty()) return run;

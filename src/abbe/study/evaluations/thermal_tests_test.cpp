@@ -162,7 +162,7 @@ TEST(EvaluationOfASpindle, TimesThatTheReadingsDoNotHaveAreRefused) {
   test.stop = 0;
   EXPECT_EQ(problem_of_thermal_test(test),
             "folder/t.csv: --stop-min: the spindle stops at 0 min and starts at 0 min; expected a stop after the "
-            "start, as the file counts its time");
+            "start, on the time scale of the file");
   test.stop = 301 * 60;
   EXPECT_THAT(problem_of_thermal_test(test), StartsWith("folder/t.csv: Z: was not read from 0 to 301 min"));
   test.stop = kNotStated;

@@ -182,7 +182,8 @@ std::vector<SensorLikeness> like_sensors(const Eigen::MatrixXd& course) {
 
 std::string likeness_words(const std::vector<std::string>& courses, const SensorLikeness& one) {
   const std::string& name = courses[one.sensor];
-  if (one.still()) return fmt::format("{} does not change: what depends on it is not told apart from the rest", name);
+  if (one.still())
+    return fmt::format("{} does not change: terms that depend on it cannot be separated from the others", name);
   const std::string other = one.other == SensorLikeness::kAllOthers ? "the others together" : courses[one.other];
   return fmt::format("{} follows from {}: {:.3g} of its deviation of {:.3g} (root mean square) remain", name, other,
                      one.left, one.whole);

@@ -64,7 +64,7 @@ void judge_outliers(const std::vector<ReadingFacts>& facts, bool robust, StudyRe
             {"probability", cluster.probability}}});
     } else {
       result.warnings.push_back(
-          fmt::format("outliers stand together: {} (by chance with a probability of {:.1e}). Something was different "
+          fmt::format("outliers are clustered: {} (by chance with a probability of {:.1e}). Something was different "
                       "there, or the model does not hold.",
                       text, cluster.probability));
     }

@@ -240,7 +240,7 @@ nlohmann::json plan_facts(const Study& study, const StudyPlan& plan) {
   add("model", fmt::format("{} parameters, of which the candidates see {} combinations", plan.parameters, plan.seen));
   for (const std::string& setup : plan.drift.setups) add("drift of a set-up", setup);
   if (!plan.drift.setups.empty() && plan.drift.determined) {
-    add("beside the drift", fmt::format("{} of {} poses are returned to; {} um if nothing drifted",
+    add("beside the drift", fmt::format("{} of {} poses are revisited; {} um if nothing drifted",
                                         plan.drift.returned_to, plan.drift.poses, um_text(plan.drift.still)));
   }
   return facts;

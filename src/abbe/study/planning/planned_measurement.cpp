@@ -219,7 +219,7 @@ void add_notes(const MeasurementRequest& request, PlannedMeasurement& planned) {
   const MeasuringProgramOptions& program = request.program;
   if (!program.machine_coordinates) {
     planned.notes.emplace_back(
-        "positions are those of the machine file: the zero offset in force has to be its zero, without tool length");
+        "positions are those of the machine file: the zero offset in force must be its zero, without tool length");
   }
   if (!request.obstacles.empty() && request.start.empty()) {
     planned.notes.emplace_back("the way to the first reading is not checked (--start says where it begins)");

@@ -148,7 +148,8 @@ void PlannedStates::take_values(const Study& study, const ErrorSet& errors) {
     const std::string& name = one.kind == StateKind::lag ? machine_.states[one.first].name : one.name;
     throw InputError(
         {.field = "plan"},
-        fmt::format("the errors depend on {}, and it is not said at which values readings can be taken", one.name),
+        fmt::format("the errors depend on {}, and the study does not say at which values readings can be taken",
+                    one.name),
         fmt::format("a table [plan.state.{}] with from and to, or [plan.course]", name));
   }
 }

@@ -78,11 +78,11 @@ std::string planned_drift_text(const StudyPlan& result) {
   for (const std::string& setup : drift.setups) text += "  " + setup + "\n";
   if (!drift.determined) {
     return text +
-           "  these readings do not tell it from what is asked for: more of them, over a longer time or at more "
-           "poses, or less that drifts\n";
+           "  these readings do not separate it from the errors: take more of them, over a longer time or at more "
+           "poses, or let less drift\n";
   }
   text += fmt::format("  {:.3f} um; {:.3f} um if nothing drifted\n", 1e3 * result.uncertainty, 1e3 * drift.still);
-  text += fmt::format("  {} poses in {} parts of the measurement; {} are returned to later, {} visits at most\n",
+  text += fmt::format("  {} poses in {} parts of the measurement; {} are revisited later, {} visits at most\n",
                       drift.poses, drift.parts, drift.returned_to, drift.most_visits);
   return text;
 }

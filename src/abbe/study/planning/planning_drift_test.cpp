@@ -327,7 +327,7 @@ TEST(PlanBesideDrift, SaysWhereNothingCanBeToldFromIt) {
   const StudyPlan plan = plan_study(study);
   EXPECT_EQ(plan.plan.status, PlanningStatus::not_determined);
   EXPECT_FALSE(plan.drift.determined);
-  EXPECT_THAT(study_plan_text(study, plan), HasSubstr("do not tell it from what is asked for"));
+  EXPECT_THAT(study_plan_text(study, plan), HasSubstr("do not separate it from the errors"));
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ void PlanningModel::add_given(std::size_t setup) {
   const Setup& given = study_.setups[setup];
   if (given.plans.empty()) {
     throw InputError({.field = "setup " + given.name},
-                     fmt::format("it is not said where instrument \"{}\" can be read", given.instrument),
+                     fmt::format("the study does not say where instrument \"{}\" can be read", given.instrument),
                      "[[setup.plan]] with all readings to choose from: its circles, its lines");
   }
   InstrumentReadings all;

@@ -334,12 +334,14 @@ TEST(PlanOverStates, WhatIsMissingIsSaid) {
   const auto message = [&](const std::string& plan) {
     return message_of([&] { plan_study(planned_study(folder, "readings = 60\n" + plan)); });
   };
-  EXPECT_EQ(message(""),
-            "plan: the errors depend on hall, and it is not said at which values readings can be taken; expected a "
-            "table [plan.state.hall] with from and to, or [plan.course]");
-  EXPECT_THAT(message("[plan.state.hall]\nvalues = [18, 24]\n"),
-              HasSubstr("the errors depend on column, and it is not said at which values readings can be taken; "
-                        "expected a table [plan.state.motor]"));
+  EXPECT_EQ(
+      message(""),
+      "plan: the errors depend on hall, and the study does not say at which values readings can be taken; expected a "
+      "table [plan.state.hall] with from and to, or [plan.course]");
+  EXPECT_THAT(
+      message("[plan.state.hall]\nvalues = [18, 24]\n"),
+      HasSubstr("the errors depend on column, and the study does not say at which values readings can be taken; "
+                "expected a table [plan.state.motor]"));
   EXPECT_THAT(message("[plan.state.wind]\nvalues = [1]\n"), HasSubstr("wind: is not a state of this machine"));
   EXPECT_THAT(message("[plan.state.hall]\nvalues = [24, 18]\n"), HasSubstr("values: do not increase"));
   EXPECT_THAT(message("[plan.state.hall]\nfrom = 24\nto = 18\n"), HasSubstr("to: is not above from"));

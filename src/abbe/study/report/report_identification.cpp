@@ -152,8 +152,8 @@ void identification_assumptions(const Study& study, const StudyResult& result, s
       "distributions.");
   if (plan.loss != LossKind::none) {
     list.push_back(
-        fmt::format("Gross errors are weighed down by the {} loss; a reading is called an outlier when its "
-                    "residual is larger than one of {:.0f} good readings would have.",
+        fmt::format("The {} loss gives gross errors little weight; a reading is called an outlier when its residual is "
+                    "larger than one of {:.0f} good readings would have.",
                     loss_name(plan.loss), 1 / IdentifyOptions{}.outlier_norm_quantile));
   }
   if (plan.strategy == Strategy::independent) {

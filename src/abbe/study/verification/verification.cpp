@@ -118,7 +118,7 @@ std::vector<VerificationVerdict> verdicts_on(const VerificationRequest& request,
   if (request.least_reduction) {
     const double value = poses.reduction();
     const bool met = value >= *request.least_reduction;
-    verdicts.push_back({fmt::format("{:.1f} times smaller: {} the wanted {:g} times", value,
+    verdicts.push_back({fmt::format("{:.1f} times smaller: {} the required {:g} times", value,
                                     met ? "at least" : "LESS than", *request.least_reduction),
                         met});
   }

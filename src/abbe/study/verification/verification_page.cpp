@@ -222,8 +222,7 @@ nlohmann::json notes(const Verification& result) {
   if (!result.poses.uncertainty.empty()) {
     list.push_back(result.correlations_known
                        ? "Predicted uncertainty: from the covariance of the identified parameters, without what the "
-                         "datum takes up. It covers what the parameters can say, not shapes of errors that the model "
-                         "does not hold."
+                         "datum takes up. It covers the parameters of the model, not errors of other shapes."
                        : "Predicted uncertainty: from the standard uncertainties that the errors file states, as if "
                          "they were independent.");
   }
@@ -237,9 +236,9 @@ nlohmann::json notes(const Verification& result) {
     list.push_back(
         "Test pieces: what the axes were commanded, sample by sample, is carried out by the machine with its true "
         "errors and the play of its axes; deviations along the normals of the surface, positive where material is "
-        "left. Best fit: the rigid displacement of the workpiece that explains most is taken out, as in a coordinate "
+        "left. Best fit: the rigid displacement of the workpiece that explains most is removed, as in a coordinate "
         "measurement. Datum not probed: where the program has the workpiece, with the displacement that an instrument "
-        "on the table cannot see and that probing takes out.");
+        "on the table cannot see and that probing removes.");
   }
   return list;
 }

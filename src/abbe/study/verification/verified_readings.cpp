@@ -95,8 +95,9 @@ void take_states(const ReadingsToVerify& request, Campaign& campaign, VerifiedRe
     }
     for (std::size_t j = 0; j < used.size(); ++j) {
       if (used[j] == 0 || machine.states[j].kind != StateKind::approach || !setup.poses().approach.empty()) continue;
-      result.warnings.push_back(fmt::format("{}: the readings do not say from which side {} came: the mean of both",
-                                            setup.name, machine.axes[machine.states[j].axis].name));
+      result.warnings.push_back(
+          fmt::format("{}: the readings do not say from which side {} came: the mean of both sides is used", setup.name,
+                      machine.axes[machine.states[j].axis].name));
     }
     for (const std::string& sentence : states_outside_covered(machine, request.identified, setup.poses()))
       result.outside.push_back(setup.name + ": " + sentence);

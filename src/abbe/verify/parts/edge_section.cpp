@@ -382,7 +382,7 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
     scale = its_scale;
     found = true;
   }
-  if (!found) return refused(EdgeStatus::not_converged, "the corner of the section did not come to rest");
+  if (!found) return refused(EdgeStatus::not_converged, "the fit of the corner of the section did not converge");
 
   EdgeFit fit;
   Part part = Part::surface;
