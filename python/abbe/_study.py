@@ -175,7 +175,7 @@ class Study:
 
         ``errors``: of this machine, with their covariance if it is known. ``readings`` and ``truth`` as in :meth:`run`.
         The unknowns of the set-ups are fitted to the readings while the errors are held. ``least_reduction``: how many
-        times smaller the mean residual must become. ``largest_ratio``: what is left may be at most so many times what the
+        times smaller the mean residual must become. ``largest_ratio``: limit of the residual divided by what the
         uncertainties explain, both root mean square. ``errors_file``: the name of the errors in texts.
         ``progress(step, done, total)`` is called after each of three steps; Ctrl-C takes effect then. Raises
         :class:`abbe.InputError`, also for readings that do not determine where the instruments stood, and warns of errors
@@ -203,7 +203,7 @@ class Study:
                             tolerances: Mapping[str, float] | None = None) -> Evaluation:
         """Location errors while the machine is heated and cools (ISO 230-3): ``abbe evaluate location-distortion``.
 
-        The poses of the study are read again and again; the readings have times. ``readings`` and ``truth`` as in
+        The poses of the study are measured repeatedly; the readings have times. ``readings`` and ``truth`` as in
         :meth:`run`. ``options``: numbers named like the options of the command: ``cycle_min`` or ``pause_min`` say what a
         cycle is, ``start_min`` and ``stop_min`` when the machine is heated. ``tolerances``: ``{"d_EX0C_um": 10}``.
         ``numbers`` of the result is a LocationDistortionNumbers. Raises :class:`abbe.InputError`.

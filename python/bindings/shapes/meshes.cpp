@@ -129,7 +129,7 @@ void bind_meshes(nb::module_& module) {
           "unit: 'mm', 'm' or 'inch', for a file that states none (default: mm). For STEP: chord_mm, the largest "
           "distance of\n"
           "the triangles from the exact faces (0.01 mm, less for very small parts and more for very large ones);\n"
-          "step_seconds, a time limit; leave_out_faces, to go on without faces that cannot be read. The "
+          "step_seconds, a time limit; leave_out_faces, to leave out faces that cannot be read. The "
           "environment\n"
           "variable ABBE_STEP_PROGRAM says where abbe-step is, which reads them.\n"
           "progress: a function of the step, what is done and its total. Raises InputError.")

@@ -64,14 +64,14 @@ void bind_comparisons(nb::module_& module) {
       .def_ro("names", &ComparedCampaigns::names, "Of the campaigns, in the order of time.")
       .def_prop_ro(
           "level_percent", [](const ComparedCampaigns& r) { return 100 * r.level; },
-          "Probability that any error of a pair is called changed if none has.")
+          "Probability that any error of a pair is reported as changed if none has.")
       .def_ro("pairs", &ComparedCampaigns::pairs,
               "Each campaign against the first; with three or more then each but the second against the one before.")
       .def_prop_ro("judged", &ComparedCampaigns::is_judged,
                    "Whether every pair has errors to compare and the significance of all of them is known.")
       .def_prop_ro(
           "ok", [](const ComparedCampaigns& r) { return r.is_judged() && !r.report.exceeds_tolerance(); },
-          "Whether all is judged and no figure exceeds its tolerance. Changes alone are no reason to say no.")
+          "Whether all is judged and no figure exceeds its tolerance. Changes alone do not make it false.")
       .def("__repr__", &summary_of);
   module.def(
       "compare", &comparison_of, nb::arg("campaigns"), nb::kw_only(), nb::arg("machine") = nb::none(),
@@ -82,7 +82,8 @@ void bind_comparisons(nb::module_& module) {
       "machine: a Machine or its file, for campaigns that are files; default: machine.toml of each results folder.\n"
       "names: of the campaigns, for texts; default: of files, folders and studies. level_percent: probability that "
       "any\n"
-      "error of a pair is called changed if none has, above 0 to 50. tolerances: {'V_max_um': 10}; with three or more\n"
+      "error of a pair is reported as changed if none has, above 0 to 50. tolerances: {'V_max_um': 10}; with three or "
+      "more\n"
       "campaigns {'V_max_C_A_um': 10}. page: whether there are curves, plots and the map of the page. progress: a\n"
       "function of the step, the pairs done and their number; Ctrl-C takes effect after a pair. Raises InputError, "
       "and\n"

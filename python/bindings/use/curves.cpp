@@ -256,7 +256,7 @@ void bind_pieces(nb::module_& module) {
         return fmt::format("<abbe.TestPiece {}: {} points>", p.name, p.piece.curve.points.size());
       });
   nb::class_<ConeFrustum>(module, "ConeFrustum",
-                          "Sizes of an inclined cone frustum, in the manner of ISO 10791-7 (M3) and NAS 979.\n\n"
+                          "Sizes of an inclined cone frustum, after ISO 10791-7 (M3) and NAS 979.\n\n"
                           ">>> import abbe\n"
                           ">>> len(abbe.ConeFrustum(height_mm=25).piece(chord_um=5).curve)\n"
                           "224\n")
@@ -273,12 +273,12 @@ void bind_pieces(nb::module_& module) {
       .def(
           "piece", [](const ConeFrustum& s, double feed, double chord) { return made(s, feed, chord, "cone frustum"); },
           nb::kw_only(), nb::arg("feed_mm_per_min") = 1200.0, nb::arg("chord_um") = 1.0,
-          "The piece and its tool path, whose points are as dense as chord_um wants.")
+          "The piece and its tool path, with points as dense as chord_um requires.")
       .def("__repr__", [](const ConeFrustum& s) {
         return fmt::format("<abbe.ConeFrustum: base {:g} mm, height {:g} mm>", s.base_diameter, s.height);
       });
   nb::class_<SShape>(module, "SShape",
-                     "Sizes of a wall in the shape of an S, in the manner of ISO 10791-7 (M4).\n\n"
+                     "Sizes of a wall in the shape of an S, after ISO 10791-7 (M4).\n\n"
                      ">>> import abbe\n"
                      ">>> abbe.SShape().piece(chord_um=5)\n"
                      "<abbe.TestPiece S shape: 254 points>\n")
@@ -295,7 +295,7 @@ void bind_pieces(nb::module_& module) {
       .def(
           "piece", [](const SShape& s, double feed, double chord) { return made(s, feed, chord, "S shape"); },
           nb::kw_only(), nb::arg("feed_mm_per_min") = 1200.0, nb::arg("chord_um") = 1.0,
-          "The piece and its tool path, whose points are as dense as chord_um wants.")
+          "The piece and its tool path, with points as dense as chord_um requires.")
       .def("__repr__", [](const SShape& s) {
         return fmt::format("<abbe.SShape: length {:g} mm, height {:g} mm>", s.length, s.height);
       });

@@ -218,7 +218,8 @@ void add_notes(const CompareRequest& request, ComparedCampaigns& result) {
   if (any_pair(result, [](const ComparedPair& pair) { return pair.chi_square.has_value(); })) {
     report.notes.push_back(fmt::format(
         "An error has changed where its adjusted probability, p (Holm), is at most {:g} %. So the probability is at "
-        "most {:g} % that any error of a pair is called changed if none has changed and the uncertainties are right.",
+        "most {:g} % that any error of a pair is reported as changed if none has changed and the uncertainties are "
+        "right.",
         100 * result.level, 100 * result.level));
     report.notes.push_back(
         "The campaigns are taken as independent. Uncertainties that they share, such as that of one laser or one "
