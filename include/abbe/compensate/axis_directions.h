@@ -17,9 +17,9 @@ using AxisApproach = std::array<std::int8_t, kMaxAxes>;
 struct ReversalAxis {
   std::size_t axis = 0;
   double value = 0;      ///< B, mm or rad; 0: none
-  double dead_band = 0;  ///< mm or rad; going back by no more than this is no reversal
+  double dead_band = 0;  ///< mm or rad; moving back by no more than this is not a reversal
 
-  /// What the command gets so that the axis stands where it shall after an approach in that direction; mm or rad.
+  /// Added to the command so that the axis reaches its position after an approach in that direction; mm or rad.
   double offset(int direction) const { return -0.5 * value * direction; }
   bool operator==(const ReversalAxis&) const = default;
 };
@@ -28,19 +28,19 @@ struct ReversalAxis {
 /// furthest place it reached in it by more than the dead band. An axis that does not move keeps its direction; before
 /// it has moved by more than the dead band it has none.
 ///
-/// So the axis is never further behind that furthest place than the dead band while it counts as moving towards it: by
-/// no more than that does play hold it off the place it is commanded to.
+/// While the axis counts as moving in a direction, it is never further behind that furthest place than the dead band.
+/// Play therefore keeps it from its commanded position by no more than the dead band.
 class AxisDirections {
  public:
   /// @param dead_bands  [axes followed] mm or rad
   explicit AxisDirections(const std::vector<double>& dead_bands);
 
-  /// From the next motion on; mm or rad.
+  /// Takes effect from the next motion; mm or rad.
   void set_dead_band(std::size_t i, double dead_band) { state_[i].dead_band = dead_band; }
 
-  /// The axis stands at a place to which it came in a way that was not seen.
+  /// The axis is at a position; how it got there is not known.
   void stand(std::size_t i, double position);
-  /// The axis moves there straight from where it is; a new direction lasts from where it is on.
+  /// The axis moves straight to a position. A change of direction counts from where the axis is now.
   void move(std::size_t i, double position);
 
   std::int8_t direction(std::size_t i) const { return state_[i].direction; }

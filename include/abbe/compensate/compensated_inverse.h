@@ -31,9 +31,9 @@
 //   X 100.0020 Y 100.0000 Z 0.0000 mm: reached
 //   X 200.0040 Y 200.0000 Z 50.0000 mm: reached
 //
-// compensate holds corrections of commands:
+// The headers of compensate correct commands:
 //   compensated_inverse.h               poses of any number, from commands or from targets
-//   corrected_poses.h                   the same with uncertainties and figures for people
+//   corrected_poses.h                   the same with uncertainties and summary figures
 //   program/program_correction.h        moves of a program, proven to stay within a tolerance
 //   tables/correction_lattice.h         corrections at the nodes of tables: axis_table.h, error_tables.h beside it
 //   left_out_errors.h                   errors that are smaller than their uncertainty
@@ -66,7 +66,7 @@ enum class CorrectionStatus : std::uint8_t {
 };
 inline constexpr std::size_t kCorrectionStatuses = static_cast<std::size_t>(CorrectionStatus::not_finite) + 1;
 
-/// The point is where it is wanted; the orientation as well as the machine can.
+/// The point is reached; the orientation is as close as the machine can bring it.
 inline bool reaches_point(CorrectionStatus status) {
   return status == CorrectionStatus::reached || status == CorrectionStatus::orientation_left ||
          status == CorrectionStatus::turn_limited;
@@ -76,15 +76,15 @@ inline bool reaches_point(CorrectionStatus status) {
 const char* correction_status_text(CorrectionStatus status);
 
 struct CorrectionOptions {
-  /// Wanted of the tool. Where the machine has no rotary axis that works for it, the orientation is only reported.
+  /// What the tool has to reach. Where no rotary axis of the machine can serve it, the orientation is only reported.
   TargetKind target = TargetKind::point_and_direction;
   double position_tolerance = 1e-9;      ///< mm
   double orientation_tolerance = 1e-11;  ///< rad
-  /// rad; how far the rotary axes together (root of the sum of squares) may turn from the commands that came. Near a
-  /// singularity a small error of orientation would need a large turn: there a part of it stays, and no command jumps
-  /// (bounded_least_squares.h).
+  /// rad; how far the rotary axes together (root of the sum of squares) may turn from the given commands. Near a
+  /// singularity a small orientation error would need a large turn: there part of the error remains, and no command
+  /// jumps (bounded_least_squares.h).
   double largest_turn = 0.01;
-  double largest_shift = 10;  ///< mm; the same of the linear axes, where they are nearly dependent
+  double largest_shift = 10;  ///< mm; the same for linear axes, where they are nearly dependent
   int largest_iterations = 30;
 };
 
@@ -92,22 +92,22 @@ struct CorrectionOptions {
 struct CorrectedArrays {
   std::span<double* const> axis;
   CorrectionStatus* status = nullptr;      ///< [count]
-  double* position_residual = nullptr;     ///< [count] mm, actual against wanted point; null: not wanted
-  double* orientation_residual = nullptr;  ///< [count] rad, of a direction the angle; 0 for a point; null: not wanted
+  double* position_residual = nullptr;     ///< [count] mm, actual from target point; null: not computed
+  double* orientation_residual = nullptr;  ///< [count] rad, angle for a direction; 0 for a point; null: not computed
 };
 
-/// Where the tool shall be, in the workpiece frame: functional point (mm), direction from it to the spindle (unit), or
-/// row-major rotation of workpiece_from_tool; what the target kind does not ask for may be null.
+/// Targets for the tool in the workpiece frame: functional point (mm), and the direction from it to the spindle (unit)
+/// or the row-major rotation of workpiece_from_tool. What the target kind does not need may be null.
 struct TargetArrays {
   ConstPointArrays point;
   ConstPointArrays direction;
   const double* rotation[9] = {};
 };
 
-/// Axis commands that bring the ACTUAL tool of a machine with errors to where it is wanted.
+/// Axis commands that bring the ACTUAL tool of a machine with errors to its target.
 ///
 /// Newton's method on the exact model (ChainPlan), from commands nearby; the derivative by the commands is the nominal
-/// one, or the actual one where that does not serve. Rotary axes take the orientation error, within
+/// one, or the actual one where the nominal one is not good enough. Rotary axes take the orientation error, within
 /// a stated turn; linear axes (or the rotary axis of a polar machine) then take the point exactly. The axes of a
 /// jointed arm take both together, near a singularity the point first. Which axes work is decided as in
 /// InverseKinematics; all others keep their command.
@@ -130,8 +130,8 @@ class CompensatedInverse {
 
   /// Commands at which the actual tool is at the targets.
   /// @param start  commands near by, such as those of InverseKinematics for the same targets. A jointed arm starts from
-  ///               the nominal solution nearest to them, wherever it is; where a status says "as they came", those are
-  ///               meant.
+  ///               the nominal solution nearest to them, wherever it is. Where a status says "as they came", it means
+  ///               that solution.
   void reach(PositionArrays start, const TargetArrays& targets, const CorrectedArrays& corrected) const;
 
   /// What makes this object unusable; empty if it is sound. Unusable, every status is not_run.

@@ -67,10 +67,10 @@ struct ControlAxisName {
   std::string name;  ///< at the control: "X1", "AX2", "3"
 };
 
-/// What tables are made of and what is asked of them; lengths in mm, angles in rad.
+/// Inputs and requirements of tables; lengths in mm, angles in rad.
 ///
 /// Messages name a field by the option of `abbe compensate table` that sets it, given below. A field that the format
-/// has no use for has to stay as it is here.
+/// does not use must keep its default.
 struct ControlTableRequest {
   std::string format;  ///< --for: TableFormat::name
   Machine machine;
@@ -109,7 +109,7 @@ struct ControlTableRequest {
   double leave_out_below = 0;     ///< --leave-out-below-uncertainty: standard uncertainties, at most 1000; 0: none
 };
 
-/// What tables that are made at one state leave at the states of a record.
+/// Errors that tables made at one state leave at the states of a record.
 struct LossOverStates {
   std::string record;           ///< name of its file
   std::vector<double> time_s;   ///< [n] of the record
@@ -129,7 +129,7 @@ struct ControlFile {
   std::string text;
 };
 
-/// One table, or what of the files can be left out like one; lengths in mm, angles in rad.
+/// Figures of one table, or of another part of the files that can be left out; lengths in mm, angles in rad.
 struct TableFigures {
   std::string name;  ///< "X", "Y for X", "EXX"
   std::size_t nodes = 0;
@@ -143,7 +143,7 @@ struct TableFigures {
   std::optional<double> standard_uncertainty;  ///< largest of a correction; not known: none is stated of the errors
 };
 
-/// What a control does, in words.
+/// A note about what the control does.
 struct ControlNote {
   std::string name;   ///< what it is about: "reversal_X"
   std::string words;  ///< without a full stop
@@ -161,7 +161,7 @@ struct ControlTables {
   std::vector<std::string> left_out_kept;  ///< small by themselves, but not together
   std::vector<ControlNote> reversals;      ///< where reversal values are, or what of the control takes them
   std::vector<std::string> refused;        ///< why the tables must not be used
-  /// Why not, although nothing is refused: straight lines between the nodes that there is room for are too far off.
+  /// Why there are no tables although nothing is refused: too few nodes to keep the interpolation tolerance.
   std::string too_few_nodes;
   /// Whether there are no tables that may be used.
   bool says_no() const { return format == nullptr || !refused.empty() || !too_few_nodes.empty(); }

@@ -12,13 +12,13 @@ namespace abbe {
 /// @param lost_motion  mm or rad
 std::string lost_motion_words(double lost_motion, bool rotary);
 
-/// What LinuxCNC's own backlash compensation takes of a joint.
+/// A setting of LinuxCNC's own backlash compensation for a joint.
 struct JointBacklash {
   std::string axis, setting;  ///< "X", "[JOINT_0]BACKLASH"
   double lost_motion = 0;     ///< minus the reversal value, mm or deg
   bool rotary = false;
 };
-/// Of all joints with a reversal value, in the order that the LinuxCNC module takes if it is not told another one.
+/// For all joints with a reversal value, in the default order of the LinuxCNC module.
 std::vector<JointBacklash> linuxcnc_backlash(const Machine& machine, const ErrorSet& errors);
 
 }  // namespace abbe

@@ -96,8 +96,8 @@ struct TableFormat {
   double default_tolerance_mm = 1e-4;
   std::string cannot;       ///< why what is not carried is not
   bool directions = false;  ///< tables differ by direction: reversal values are in them
-  /// What of the control takes a lost motion (minus the reversal value, mm or rad) of an axis by its name there, where
-  /// the tables do not; null: nothing is known of it.
+  /// Which setting of the control compensates a lost motion (minus the reversal value, mm or rad) of an axis, given by
+  /// its name in the control, where the tables do not; null: not known.
   std::function<std::string(const std::string& axis, double lost_motion, bool rotary)> backlash;
   /// What the control calls the axis that it counts as `index`, from 0 (joint_order.h); null: as the machine file does.
   std::function<std::string(std::size_t index, const Axis& axis)> default_name;
@@ -110,7 +110,7 @@ const std::vector<TableFormat>& table_formats();
 /// @throws InputError naming the formats there are
 const TableFormat& table_format(const std::string& name);
 
-/// @throws InputError for a setting that would change nothing: whoever turns a sign has to know that it did not turn
+/// @throws InputError for a setting that would have no effect: a user who negates a sign must know that it was not
 void refuse_settings_of_other_formats(const TableFormat& format, const std::set<TableSetting>& given);
 
 /// What names of axes have to be, for messages: "AXIS=NAME, such as X=X1; here the number of the joint".

@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// A machine into whose geometry its constant errors have been put.
+/// A machine whose constant errors are part of its nominal geometry.
 ///
 /// Location errors displace axis lines and the tool offset error the functional point, which is a change of the
 /// machine's data and nothing else: with them in place the nominal kinematics is the actual one, exactly, and with it

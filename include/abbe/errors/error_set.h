@@ -48,7 +48,7 @@ struct LocationError {
   bool operator==(const LocationError&) const = default;
 };
 
-/// Reversal of one axis: where it stands depends on the side from which it came there (lost motion, backlash).
+/// Reversal of one axis: its position depends on the direction of approach (lost motion, backlash).
 ///
 /// Reversal value B = position after an approach in positive direction less that after one in negative direction
 /// (ISO 230-2:2014, 3.11); lost motion makes it negative. At a command q the axis stands as if q + approach B / 2 had
@@ -60,7 +60,7 @@ struct Reversal {
   bool operator==(const Reversal&) const = default;
 };
 
-/// Where E(q) stands against the motion of its axis, see docs/conventions.md. `iso` is the convention of this project:
+/// Order of E(q) and the motion of its axis, see docs/conventions.md. `iso` is the convention of this project:
 /// linear T(q) E(q), rotary E(q) T(q). The others exist to reproduce published work.
 enum class ErrorOrder { iso, after_motion, before_motion };
 

@@ -10,7 +10,7 @@
 
 namespace abbe {
 
-/// What another process or a file has of numbered work does not fit. The message says how.
+/// Results of numbered work from another process or a file do not fit. The message says how.
 class WorkError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -27,11 +27,11 @@ struct NumberedWork {
   int threads = 0;         ///< as for_each_block()
   /// Several blocks may be computed at a time, each on one thread; else one after the other, each with all threads.
   bool in_parallel = true;
-  bool is_followed = false;  ///< more such work follows, so nobody knows how long all of it takes
+  bool is_followed = false;  ///< more such work follows, so the total time is not known
   bool for_all = false;      ///< every process goes on with the results; else the first one alone has them all
   bool is_kept = true;       ///< results are worth a file; else they are computed again after a kill
-  /// Each process begins in a range of its own, the same in all work with as many blocks: it keeps something of its
-  /// blocks that makes them quicker the next time.
+  /// Each process begins in its own range of blocks, the same in all work with this number of blocks: it keeps data of
+  /// its blocks that make them faster the next time.
   bool in_ranges = false;
 
   /// Fingerprint of everything that the results depend on: equal ones may be mixed.
@@ -45,8 +45,8 @@ struct NumberedWork {
   std::vector<std::uint8_t> is_there{};  ///< [blocks] whose results are in their place already; empty: none
   /// Called once for every other block when its results are in their place, one call at a time but from any thread.
   std::function<void(std::size_t block)> finished{};
-  /// For results that are too large to be kept of every block, and that may be added up in any order: adds those of a
-  /// block to the sum and drops them. Called once for every block that is in its place, one call at a time but from any
+  /// For results that are too large to keep for every block and that may be summed in any order: adds those of a block
+  /// to the sum and drops them. Called once for every block that is in its place, one call at a time but from any
   /// thread, when they have been sent or written and nobody asks for them any more. Not with `for_all`.
   std::function<void(std::size_t block)> reduce{};
 
@@ -65,7 +65,7 @@ inline void do_work(const WorkDriver& driver, const NumberedWork& work) {
   driver ? driver(work) : work_in_threads(work);
 }
 
-/// Numbers as the bytes of results. Processes and files are of one kind of computer, so bytes keep their order.
+/// Numbers as the bytes of results, in native byte order: processes and files stay on one kind of computer.
 void pack_numbers(std::span<const double> numbers, std::vector<std::byte>& bytes);
 
 /// Takes numbers off the front of the bytes. @throws WorkError if there are fewer

@@ -26,8 +26,8 @@ struct VarianceComponents {
   ReadingVariance variance;
   /// Covariance of (variance factor, pose variance), inverse of the information; 0 of what is not estimated.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  /// The estimate is 0, the least that a variance can be: the readings show no common noise. The covariance is then
-  /// that of an estimate that could be negative.
+  /// The estimate is 0, the smallest possible variance: the readings show no common noise. The covariance is then that
+  /// of an estimate that could be negative.
   bool pose_noise_at_zero = false;
   double stated_chi_square = 0;  ///< of the fit with the uncertainties as stated
   double stated_degrees_of_freedom = 0;
@@ -37,7 +37,7 @@ struct VarianceComponents {
   double variance_factor_uncertainty() const;
   /// Standard deviation of each coordinate of the common displacement, mm.
   double pose_noise() const;
-  /// Its standard uncertainty, mm; at zero the value that twice the standard uncertainty of the variance reaches.
+  /// Its standard uncertainty, mm; if it is zero, the root of twice the standard uncertainty of the variance.
   double pose_noise_uncertainty() const;
 };
 

@@ -16,8 +16,8 @@ struct EstimatedWalk {
   std::vector<std::size_t> priors;  ///< indices into Problem::joint_priors
   double variance = 0;              ///< of the given priors; afterwards as estimated: mm^2/s or rad^2/s
   double variance_uncertainty = 0;  ///< standard uncertainty
-  /// The readings show no walk: the least variance that counts for nothing is taken. variance_uncertainty is then that
-  /// of an estimate that could be negative.
+  /// The readings show no walk: a variance too small to matter is used. variance_uncertainty is then that of an
+  /// estimate that could be negative.
   bool at_zero = false;
 };
 

@@ -37,7 +37,7 @@
 //    90 deg +0.00 um
 //   135 deg +1.50 um
 //
-// instruments holds measurement equations and what the identification sees of them:
+// instruments holds measurement equations and their interface to the identification:
 //   ball_bar.h, interferometer.h, ...   a header for each instrument; trackers/ and polygon/ have several each
 //   equation_instrument.h               what they derive from: one equation, derivatives follow
 //   measurement_plan.h                  poses of a measurement: grids, lines, diagonals, spirals
@@ -116,39 +116,39 @@ struct InstrumentPlace {
   std::vector<std::size_t> quantities{};       ///< indices into Instrument::quantities() on which it depends
 };
 
-/// At which other poses an instrument that stands where it stands could be read too.
+/// At which other poses an instrument could be read without moving it.
 enum class PoseFreedom {
   anywhere,    ///< wherever the axes go: a tracking interferometer, a level
-  along_line,  ///< where those axes go that already moved: a beam, a straightedge
+  along_line,  ///< along the axes that already moved: a beam, a straightedge
   together,    ///< where the meeting points keep their displacement, the linear axes following: a nest, a probe
   at_distance  ///< where the meeting points keep their distance: a bar
 };
 
-/// Which items the readings of an instrument belong to in one respect: their station, their reflector.
+/// A grouping of the items of an instrument: by station, by reflector.
 struct ItemLabel {
   std::string kind;                    ///< "station"
   std::vector<std::string> names;      ///< of the stations
   std::vector<std::uint16_t> of_item;  ///< [Instrument::items()] index into names
 };
 
-/// A place from which readings were taken, sought by the nominal machine.
+/// Fit of the position of a station to its readings, with the nominal machine.
 struct StartFit {
   std::string place;                  ///< "station1"
   std::vector<std::size_t> readings;  ///< indices
-  bool found = false;                 ///< false: no place explains half of the readings
-  bool determined = true;             ///< false: too few readings, or they lie so that no place can be found
+  bool found = false;                 ///< false: no position explains half of the readings
+  bool determined = true;             ///< false: too few readings, or a poor arrangement of them
   bool rough = false;                 ///< other numbers of the set-up are open too: a bad fit proves nothing
   double extent_mm = 0;               ///< root mean square distance of the points that were seen from their mean
 };
 
-/// A set-up that an identification can start with.
+/// An instrument with a set-up that an identification can start from.
 struct StartedInstrument {
   std::shared_ptr<const Instrument> instrument;
   std::vector<StartFit> fits{};       ///< of the places that were sought
   std::vector<std::string> warnings;  ///< what there is to say: what is not determined, readings of another reflector
 };
 
-/// A number of a set-up that is to be found from the readings, so that nothing can be planned with it.
+/// A number of the set-up that is left to be found from the readings; a plan needs its value.
 struct MissingNumber {
   std::string problem, expected;  ///< in words
 };
@@ -177,7 +177,7 @@ struct ModelledBlock {
   double* by_quantity = nullptr;
 };
 
-/// A measuring instrument with its set-up: everything of it that the identification has to know.
+/// A measuring instrument with its set-up: everything that the identification needs to know about it.
 ///
 /// An instrument is its measurement equation: what it reads if one body of the machine is seen from another at some
 /// pose. Frames: the tool's frame has its origin at the gauge point (with the tool offset error, which belongs to
@@ -202,32 +202,32 @@ class Instrument : public std::enable_shared_from_this<Instrument> {
   virtual double standard_uncertainty(const InstrumentReadings& readings, std::size_t reading,
                                       std::size_t component) const = 0;
 
-  /// Start values of the quantities where a rough guess will not do: found from the readings and the nominal machine.
-  /// @param notes  what there is to say, appended
+  /// Start values of the quantities where a rough guess is not enough: found from the readings and the nominal machine.
+  /// @param notes  remarks for the user are appended to it
   /// @return [quantities()]; as given where nothing needs to be found
   virtual std::vector<double> start_values(const Machine& machine, const InstrumentReadings& readings,
                                            std::vector<std::string>& notes) const;
 
-  /// This instrument with the set-up that an identification starts with: start_values(), unless it knows better.
+  /// This instrument with the set-up that an identification starts from: start_values(), unless overridden.
   virtual StartedInstrument started(const Machine& machine, const InstrumentReadings& readings) const;
 
-  /// Mistakes in its files that the fits of started() show; those with fewer single ones come first.
+  /// Mistakes in its files that the fits of started() show; those with the fewest single mistakes come first.
   virtual std::vector<ReadingMistake> usual_mistakes() const { return {}; }
-  /// What happened between readings of which each part fits by itself, in words after the name of the place: "moved".
+  /// What happened between two parts of the readings that each fit alone, as a verb after a station's name: "moved".
   virtual const char* interruption_words() const { return "moved"; }
 
-  /// How many numbers of the set-up started() fits to the readings so well that a nominal machine can be judged by
-  /// what is left; 0: they are a rough start only.
+  /// How many numbers of the set-up started() fits well enough for the residuals to judge a nominal machine; 0: its fit
+  /// is only a rough start.
   virtual std::size_t fitted_by_start() const { return 0; }
 
   /// This instrument as it really is in a simulation: a number known within an uncertainty is what was stated as true,
   /// or is drawn from that uncertainty.
   virtual std::shared_ptr<const Instrument> truth(RandomStream& random) const;
 
-  /// This instrument as a plan of readings takes it: with what is stated as true, else with the start values.
+  /// This instrument for a plan of readings: with the values stated as true, else with the start values.
   virtual std::shared_ptr<const Instrument> as_planned() const;
 
-  /// What of the set-up has to be said before readings can be planned, and how; nothing where all is said.
+  /// Which number of the set-up must be given before readings can be planned, and how; nothing if none is missing.
   virtual std::optional<MissingNumber> missing_for_plan() const { return std::nullopt; }
 
   /// The readings as weighted residuals of these errors; the unknowns stand at the present values. Every instrument
@@ -244,12 +244,12 @@ class Instrument : public std::enable_shared_from_this<Instrument> {
   virtual SimulatedInstrument simulate(const Machine& machine, const ErrorSet& errors, const InstrumentReadings& plan,
                                        const InstrumentSimulationOptions& options) const;
 
-  /// False if there is a reading at every pose where there is a sight; else poses can lie beside what is measured.
+  /// False if every pose with a line of sight has a reading; else poses can lie beside what is measured.
   virtual bool may_miss() const { return true; }
 
-  /// True if a reading is a point: where what is seen stands, in all three directions.
+  /// True if a reading is a point: the position of the target in all three directions.
   virtual bool measures_points() const { return false; }
-  /// The same instrument if it said where a point is by its coordinates x, y, z; itself where it does not see points.
+  /// The same instrument with readings of points as coordinates x, y, z; itself if it does not measure points.
   virtual std::shared_ptr<const Instrument> in_coordinates() const { return shared_from_this(); }
 
   /// What readings are grouped by when patterns are looked for.

@@ -35,8 +35,8 @@ struct InversePlan {
   std::size_t rotary_wanted = 0;        ///< how many such a target needs: 0, 2 or 3
   std::array<std::size_t, 3> linear{};  ///< axes found from the position, chain order
   std::size_t linear_count = 0;
-  /// Rotary axes that leave the target's orientation alone, nearest the workpiece first: one of them serves the
-  /// position if there are fewer than three linear axes. They count as held until then.
+  /// Rotary axes that do not change the target's orientation, nearest to the workpiece first. If there are fewer than
+  /// three linear axes, one of them serves the position. Otherwise they count as held.
   std::array<std::size_t, kMaxAxes> polar{};
   std::size_t polar_count = 0;
   /// Jointed arms: rotary axes that take position and orientation together, chain order: 3 for a point, 5 for a point

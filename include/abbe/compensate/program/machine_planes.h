@@ -15,9 +15,9 @@ namespace abbe {
 
 /// Tilted planes of a nominal machine with X, Y, Z and one or two rotary axes that words move.
 ///
-/// Of several positions of the rotary axes within travel the one is taken at which the first rotary axis turns least;
-/// where that is the same, the second one; where that is the same too, the first one nearest to zero, then the second.
-/// First is the one nearest to the bed; where one carries the tool and one the workpiece, that of the workpiece.
+/// Where several positions of the rotary axes lie within travel, the one at which the first rotary axis turns least is
+/// taken; if equal, the second one turns least; if equal again, the first is nearest to zero, then the second. First is
+/// the axis nearest to the bed; where one carries the tool and one the workpiece, that of the workpiece.
 /// Source: FANUC Series 16i/18i operator's manual, tilted working plane command, "output judgement conditions".
 class MachinePlanes final : public PlaneKinematics {
  public:

@@ -4,7 +4,7 @@
 
 namespace abbe {
 
-/// The way of one move in the words of its program: a straight line, or an arc or helix in X, Y, Z with all other words
+/// Path of one move in the words of its program: a straight line, or an arc or helix in X, Y, Z with all other words
 /// linear in the angle. Where the radii of start and end differ, the radius is linear in the angle too, so that the arc
 /// ends where the program says.
 class MovePath {
@@ -35,24 +35,24 @@ class MovePath {
   std::array<double, 3> speed_{};
 };
 
-/// Length by which a control reckons the duration of a straight motion of its words, as LinuxCNC does: X Y Z if any of
-/// them moves, else U V W, else the rotary words; mm or rad. Source: LinuxCNC, G-code reference, "Feed rate".
+/// Length from which a control computes the duration of a straight motion, as LinuxCNC does: that of X Y Z if any of
+/// them moves, else of U V W, else of the rotary words; mm or rad. Source: LinuxCNC, G-code reference, "Feed rate".
 double feed_length(const WordValues& start, const WordValues& end);
 
 /// Duration of a move as programmed, minutes; negative: not known (rapid moves, feed per revolution, no feed).
 double move_duration(const ProgramMove& move);
 
-/// Feed of a piece that shall last that long.
+/// Sets the feed of a piece so that it takes its share of the duration of the move.
 ///
-/// G93: inverse time. G94: the feed of the move as long as the control then takes that duration, to 1 %; else (a rotary
-/// move that the correction gives a little linear motion, by which the control would go) inverse time.
+/// G93: inverse time. G94: the feed of the move if the control then takes that duration, to 1 %; else inverse time (as
+/// for a rotary move to which the correction adds a little linear motion, which would set the feed in the control).
 /// @param duration  of the move, minutes, as move_duration()
 /// @param share     of the move that the piece is
 void set_piece_feed(const ProgramMove& move, double duration, double share, const WordValues& start,
                     CorrectedPiece& piece);
 
-/// Feed of a motion of one axis alone that belongs to a piece: that of the move where it is one of the same kind of
-/// axis; else, and with inverse time, such that it is as fast as the piece, and takes no longer.
+/// Sets the feed of a motion of one axis alone that belongs to a piece: that of the move, if the move is of the same
+/// kind of axis; else, and with inverse time, a feed at which it is as fast as the piece and takes no longer.
 /// @param rotary    of the axis
 /// @param way       of the functional point by that motion, mm
 /// @param duration  of the piece, minutes; not above 0: not known

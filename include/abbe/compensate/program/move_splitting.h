@@ -15,7 +15,7 @@ struct PathTolerance {
   double orientation = 1e-5;  ///< rad, of the tool's direction; infinite: not looked at
 };
 
-/// A share of a move between two corrected poses, both of its program.
+/// Part of a move between two corrected poses.
 struct MovePiece {
   const CorrectedNode* from = nullptr;
   const CorrectedNode* to = nullptr;
@@ -27,26 +27,26 @@ struct MovePiece {
 PieceBound bound_pieces(const PieceBounder& bounder, std::size_t axes, ProgramCoordinates coordinates,
                         const Eigen::Vector3d& tool, std::span<const MovePiece> pieces);
 
-/// At most 1 where the bound keeps to the tolerance; else about the square of the number of parts that will.
+/// Bound over tolerance: at most 1 if the piece is good; else about the square of the number of parts needed.
 /// @param piece  null: of several pieces at once
 double bound_excess(const PieceBounder& bounder, const PathTolerance& tolerance, const PieceBound& bound,
                     const MovePiece* piece);
 
 /// Splits one move until every piece stays within the tolerance. Keeps its memory for the next move.
 ///
-/// Where an end is kept at the end of a travel, a piece as short as can be leads to where the point is reached: the
-/// rest stays within the tolerance, and that piece within what is missing at its end and the tolerance.
+/// Where an end of the move is held at the end of a travel, the shortest possible piece leads to where the point is
+/// reached. The rest stays within the tolerance; that piece within the tolerance plus the error left at its end.
 class MoveSplitter {
  public:
   MoveSplitter(const NodeCorrection& correction, const PieceBounder& bounder, std::size_t axes,
                std::size_t largest_pieces)
       : correction_(&correction), bounder_(&bounder), axes_(axes), largest_pieces_(largest_pieces) {}
 
-  /// @returns false if that takes too many pieces; nodes() are then as far as it came
+  /// @returns false if that takes too many pieces; nodes() then hold what was done so far
   bool split(const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance, const CorrectedNode& start,
              const CorrectedNode& end);
 
-  /// The same of a part of a move whose ends are corrected after these approaches.
+  /// The same for part of a move, its ends corrected for these approaches.
   /// @param from, to  shares of the move where it begins and ends
   bool split_part(const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance,
                   const AxisApproach& approach, const CorrectedNode& start, double from, const CorrectedNode& end,

@@ -14,7 +14,7 @@ namespace abbe {
 
 struct ErrorAlong;
 
-/// Distances of the functional point, on its way through the nominal chain, from what each axis turns about; mm.
+/// Distances of the functional point from the point and line of each axis of the nominal chain; mm.
 struct ChainLevers {
   std::array<double, kMaxAxes> from_point{};  ///< from Axis::point
   std::array<double, kMaxAxes> from_line{};   ///< rotary: from the axis line
@@ -36,18 +36,18 @@ struct PieceMotion {
   double point_width = 0;  ///< how far they are from the point of the levers, mm
 };
 
-/// By how much the tool leaves the commanded path between the ends of a piece, beyond what is missing at the ends.
+/// By how much the tool leaves the commanded path between the ends of a piece, beyond the error at the ends.
 struct PieceBound {
   double position = 0;     ///< mm
   double orientation = 0;  ///< rad, of the tool's direction
 
-  // Besides, where axes have reversal values (docs/programs.md, "Reversal"):
+  // In addition, for axes with reversal values (docs/programs.md, "Reversal"):
   double lag = 0;        ///< mm; by how much the point is off while axes may lag by PieceMotion's dead bands
   double lag_turn = 0;   ///< rad; the same of the tool's direction
   double axis_bend = 0;  ///< tool centre: |second derivative by s| of the commands of X, Y, Z; mm
 };
 
-/// Axes that have play: their commands are offset by up to half of the reversal value in either direction.
+/// Axes with play: their commands are offset by up to half of the reversal value in either direction.
 struct PlayBounds {
   std::array<double, kMaxAxes> offset{};  ///< of commands, mm or rad
   std::array<double, kMaxAxes> lag{};     ///< of the actual position behind that commanded, mm or rad; 0: no play
@@ -55,11 +55,11 @@ struct PlayBounds {
   bool lags_count = true;  ///< as part of the tolerance
 };
 
-/// In tool centre programs a linear axis may go beyond both ends of a piece by so much of the dead band (it goes on a
-/// curve).
+/// Share of the dead band by which a linear axis may go beyond both ends of a piece in tool centre programs (where its
+/// path is a curve).
 inline constexpr double kOvershootShare = 0.25;
 
-/// Proves that pieces stay near the commanded path: bounds |actual(s) - commanded(s)| with nothing but bounds of error
+/// Proves that pieces stay near the commanded path: bounds |actual(s) - commanded(s)| using only bounds of the error
 /// motions, their derivatives and levers.
 ///
 /// With g the actual minus the commanded point, zero at both ends, |g| <= max|g''| / 8 + sum|jumps of g'| / 4. Bounds
@@ -73,10 +73,10 @@ class PieceBounder {
   ///                    Machine::npos: none
   PieceBounder(const Machine& machine, const ErrorSet& errors, const std::array<std::size_t, 3>& point_axes);
 
-  /// Reversal values, which the errors given before do not bring in.
+  /// Reversal values: the constructor does not take them from the errors.
   void set_play(const PlayBounds& play) { play_ = play; }
   const PlayBounds& play() const { return play_; }
-  /// As ProgramCorrectionOptions.
+  /// As in ProgramCorrectionOptions.
   void set_tool_length_share(double share) { tool_length_share_ = share; }
   bool is_point_axis(std::size_t i) const { return i == point_axes_[0] || i == point_axes_[1] || i == point_axes_[2]; }
 

@@ -7,7 +7,7 @@
 
 namespace abbe {
 
-/// What a program's tilted planes (G68.2, G53.1) need to know of the machine; formats knows text and this.
+/// What tilted planes of a program (G68.2, G53.1) need from the machine: the interface that formats uses.
 class PlaneKinematics {
  public:
   virtual ~PlaneKinematics() = default;
@@ -15,7 +15,7 @@ class PlaneKinematics {
   /// Why the machine has no tilted planes; empty if it has.
   virtual const std::string& problem() const = 0;
 
-  /// Positions of X, Y, Z that bring the tool to a place of the workpiece, with the rotary axes as they stand.
+  /// Positions of X, Y, Z that bring the tool to a place on the workpiece, with the rotary axes where they are.
   ///
   /// @param at_zero  rotary words at which X, Y, Z of `words` are positions that reach this place, rad; others unused
   /// @param tool     tool length offset in force, which is in these positions, mm
@@ -29,7 +29,7 @@ class PlaneKinematics {
   /// @param direction  `axes`: in directions of positive X, Y, Z words with the rotary axes as `at_zero` says;
   ///                   `tool_centre`: in the workpiece frame
   /// @param words      in: where the axes stand; out: the rotary ones turned; mm, rad
-  /// @returns what stands against it, or an empty text
+  /// @returns why that is not possible, or an empty text
   virtual std::string turn_tool(ProgramCoordinates coordinates, const std::array<double, 3>& direction,
                                 const WordValues& at_zero, WordValues& words) const = 0;
 };

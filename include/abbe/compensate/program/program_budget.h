@@ -10,8 +10,8 @@
 
 namespace abbe {
 
-/// How much a corrected program may become and how long that may take. A program of a few lines can have loops, turns
-/// and arcs that become gigabytes or never end. May be asked from any thread; the time runs from the construction.
+/// Limits of the size of a corrected program and of the time to compute it. A program of a few lines can have loops,
+/// turns and arcs that produce gigabytes or never end. Thread-safe; the time counts from construction.
 class ProgramBudget {
  public:
   enum class Spent {

@@ -19,31 +19,31 @@ namespace abbe {
 struct ProgramCorrectionOptions {
   CorrectionOptions inverse;
   PathTolerance tolerance;        ///< of feed moves
-  double rapid_tolerance = 0.01;  ///< mm, of rapid moves, whose orientation is not looked at between their ends
-  /// mm, of axes with reversal values, of rotary ones at the longest lever of the functional point with the tool in
-  /// force and no more than the tolerance of the orientation; 0: an eighth of the tolerances and part of them, else
-  /// what it costs comes on top of them.
+  double rapid_tolerance = 0.01;  ///< mm, of rapid moves; their orientation is checked at their ends only
+  /// mm, dead band of axes with reversal values. For rotary axes it applies at the longest lever of the functional
+  /// point with the active tool, and is at most the orientation tolerance. 0: an eighth of the tolerances, and its
+  /// effect counts as part of them; any other value: its effect comes on top of them.
   double reversal_dead_band = 0;
-  /// By this share of the tool length offset in force the tool is too long: of a workpiece that expands
-  /// (WorkpieceErrors), because the machine file's tool alone is in the errors.
+  /// The tool is too long by this share of the active tool length offset: for a workpiece that expands
+  /// (WorkpieceErrors), because the errors include only the tool of the machine file.
   double tool_length_share = 0;
   double limit = 0;                     ///< mm; corrections of the functional point above it are counted; 0: no limit
   std::vector<double> rest;             ///< [axes] commands of axes that no word moves, mm or rad; empty: zero
   int threads = 0;                      ///< 0: as many as the machine has
   std::size_t largest_pieces = 100000;  ///< of one move
-  /// Where it is spent, moves are no longer split: correct() ends soon, and its pieces are no corrected program. Not
-  /// owned; null: none.
+  /// Once it is spent, moves are no longer split: correct() soon returns, and its pieces are not a corrected program.
+  /// Not owned; null: no limits.
   const ProgramBudget* budget = nullptr;
 };
 
 /// Corrects the moves of a program so that the tool of a machine with errors follows the commanded path.
 ///
-/// Axes with reversal values get half of it against the direction of their last motion, and a motion of their own by
-/// all of it where they turn round (ProgramReversals).
+/// Axes with a reversal value are offset by half of it against the direction of their last motion. Where they reverse,
+/// a separate motion takes up all of it (ProgramReversals).
 ///
 /// The ends of moves are corrected by CompensatedInverse; a move whose path between them cannot be proven to stay
-/// within the tolerance (PieceBounder) is split. Dense programs pass with one pose and a share of a common bound per
-/// move. The tool is the machine file's, lengthened by ProgramMove::tool_length. Results do not depend on the batches
+/// within the tolerance (PieceBounder) is split. In dense programs a move costs one pose and a share of a common
+/// bound. The tool is the machine file's, lengthened by ProgramMove::tool_length. Results do not depend on the batches
 /// nor on the number of threads. Method and proof: docs/programs.md.
 class ProgramCorrection : public MoveCorrector {
  public:
@@ -59,7 +59,7 @@ class ProgramCorrection : public MoveCorrector {
   const ProgramReport& report() const;
   /// Axes whose reversal values are compensated, with their dead bands for the machine file's tool.
   const std::vector<ReversalAxis>& reversals() const;
-  /// What makes this object unusable; empty if it is sound. Unusable, moves come back as they are.
+  /// Why this object is unusable; empty if it is sound. An unusable object returns moves unchanged.
   const std::string& problem() const;
 
  private:

@@ -25,7 +25,7 @@ enum class MoveKind : std::uint8_t {
   arc_counterclockwise,  ///< G3
 };
 
-/// How a straight move goes with the spindle. All but the first stay one piece: in between the control would slow down.
+/// How a straight move is tied to the spindle. All but the first stay one piece: the control would slow down between.
 enum class SpindleMove : std::uint8_t {
   none,
   tapping,        ///< G84, G74 at the feed F with a tap holder that gives way
@@ -73,11 +73,11 @@ struct ProgramMove {
   std::array<double, 3> tool_length{};  ///< X, Y, Z of the tool length offset in force, mm (G43, G43.1, G43.2)
 };
 
-/// mm; a shorter way is none to a control, but what rounding leaves of the same place. LinuxCNC 2.9 has it so too
+/// mm; a shorter distance is no motion, but the rounding of one and the same position. LinuxCNC 2.9 does the same
 /// (emccanon.cc).
 inline constexpr double kNoMotion_mm = 1e-7;
 
-/// Such a straight move has its feed per minute in angles.
+/// Whether a straight move is rotary only: its feed per minute is then an angle.
 inline bool moves_only_rotary_axes(const ProgramMove& move) {
   if (move.kind != MoveKind::straight) return false;
   bool linear = false, rotary = false;
@@ -91,7 +91,7 @@ inline bool moves_only_rotary_axes(const ProgramMove& move) {
   return rotary && !linear;
 }
 
-/// A piece of a corrected move: where the control is to go in a straight line of all words.
+/// A piece of a corrected move: the control moves all words to its end in a straight line.
 struct CorrectedPiece {
   WordValues end{};  ///< mm, rad
   double feed = 0;   ///< as `feed_mode`
@@ -105,7 +105,7 @@ struct CorrectedPieces {
   std::vector<std::size_t> first;  ///< [moves + 1]
 };
 
-/// What a program's moves become; formats knows text and this, compensate knows moves and this.
+/// Corrects the moves of a program: the interface between formats (text) and compensate (moves).
 class MoveCorrector {
  public:
   virtual ~MoveCorrector() = default;

@@ -10,7 +10,7 @@
 
 namespace abbe {
 
-/// Where in a program a figure is largest.
+/// Place in a program where a figure is largest.
 struct ProgramPlace {
   double value = 0;                          ///< mm or rad; of the figure
   std::size_t line = 0;                      ///< of the program; 0: nowhere
@@ -33,7 +33,7 @@ struct StatusCount {
   void add(const StatusCount& later);
 };
 
-/// What was done to a program.
+/// Result of the correction of a program.
 struct ProgramReport {
   std::size_t moves = 0;
   std::size_t pieces = 0;
@@ -43,12 +43,12 @@ struct ProgramReport {
   ProgramPlace largest_orientation_left;       ///< rad, of the tool direction, where the machine cannot turn it
   std::array<StatusCount, kCorrectionStatuses> status;        ///< by CorrectionStatus, of the ends of moves and pieces
   std::array<ProgramPlace, kCorrectionStatuses> first_place;  ///< of each status; mm, by which the point is missed
-  /// Ends of rapid moves to a place within the travel whose correction would lead out of it and was kept at its end:
-  /// not among `status`.
+  /// Ends of rapid moves within the travel whose correction would lead out of it and was held at its end; not counted
+  /// in `status`.
   StatusCount held_at_travel;
-  ProgramPlace largest_held;  ///< mm, by which the actual point misses the place there
-  /// Moves at work that begin where a rapid move was kept at the end of a travel; from where the point is reached on
-  /// they are proven as all others.
+  ProgramPlace largest_held;  ///< mm, by which the actual point misses that place
+  /// Feed moves that begin where a rapid move was held at the end of a travel. From the place where the point is
+  /// reached, they are proven like all others.
   StatusCount held_starts;
   ProgramPlace largest_held_start;  ///< mm, by which the actual point misses their beginning
   StatusCount bent_with_spindle;    ///< moves with the spindle, which are not split, whose path leaves the tolerance

@@ -8,8 +8,8 @@
 
 namespace abbe {
 
-/// The same function inside the old ends, over nodes of which the outer ones lie further out: cells at the ends are
-/// continued in straight lines as far as the first node outside, and keep its value beyond it.
+/// The same function inside the old ends, with outer nodes that lie further out: the cells at the ends continue in
+/// straight lines to the first node outside, and the value stays constant beyond it.
 /// @param positions  [inputs][nodes] with all the lattice's nodes but those at its ends; at least two old nodes each
 CorrectionLattice continued_lattice(const CorrectionLattice& lattice,
                                     const std::vector<std::vector<double>>& positions);
@@ -27,8 +27,8 @@ struct AnchoredLattice {
   std::vector<AnchoredNodes> nodes;  ///< [inputs]
 };
 
-/// Lattice whose nodes are tied to a place along every input, as those of controls are that count them from their
-/// reference position. Where the tie makes the interpolation worse than the tolerance, it is tried with closer nodes.
+/// Lattice with a node at a given place along every input, for controls that count nodes from their reference position.
+/// Where this makes the interpolation worse than the tolerance, closer nodes are tried.
 AnchoredLattice build_anchored_lattice(const Machine& machine, const ErrorSet& errors,
                                        const AnchoredLatticeOptions& options);
 

@@ -15,8 +15,8 @@ struct AnchoredNodes {
 /// @param interval  above zero
 AnchoredNodes anchored_nodes(double from, double to, double anchor, double interval);
 
-/// Nodes as close as asked for, or as there is room for; an anchor between the ends takes three nodes, however few are
-/// asked for.
+/// Nodes at the requested interval, or as close as the number of nodes allows. An anchor between the ends needs three
+/// nodes, even if fewer are requested.
 /// @param multiple  the interval is rounded up to a whole number of these; 0: it is not
 AnchoredNodes anchored_nodes_within(double from, double to, double anchor, double interval, double multiple,
                                     std::size_t most);
@@ -26,8 +26,8 @@ struct Continuation {
   std::size_t index = 0;
   double share = 0;
 };
-/// Where places lie in a grid whose cells at the ends are continued in straight lines as far as the first place
-/// outside; what is further out is there, too.
+/// Positions of places in a grid whose cells at the ends continue in straight lines to the first place outside; places
+/// further out get the position of that one.
 /// @param from  at least two nodes, ascending
 /// @param to    ascending
 std::vector<Continuation> continuations(const std::vector<double>& from, const std::vector<double>& to);

@@ -18,7 +18,7 @@
 
 namespace abbe {
 
-/// A pose of a program and what it becomes.
+/// A pose of a program, as programmed and corrected.
 struct CorrectedNode {
   WordValues words{};                                 ///< as programmed; mm, rad
   WordValues corrected{};                             ///< the same words for the machine with errors
@@ -30,7 +30,7 @@ struct CorrectedNode {
   CorrectionStatus status = CorrectionStatus::not_run;
 
   bool point_reached() const { return reaches_point(status); }
-  /// Besides, the point is known where it is not reached because the axes are kept at the end of a travel.
+  /// The point is also known where it is not reached because axes are held at the end of a travel.
   bool point_known() const {
     return point_reached() || (status == CorrectionStatus::outside_travel && std::isfinite(position_left));
   }
@@ -60,8 +60,8 @@ class NodeCorrection {
   CorrectedNode after(ProgramCoordinates coordinates, std::size_t tool, const CorrectedNode& node,
                       const AxisApproach& approach) const;
 
-  /// A corrected node whose axes get something more, by their nominal kinematics in tool centre programs. Where that
-  /// leads out of the travel they are kept at its end, and the status says so.
+  /// A corrected node with something added to its axes, in tool centre programs through the nominal kinematics. Where
+  /// that leads out of the travel, the axes are held at its end, and the status says so.
   /// @param added  [axes] mm or rad
   CorrectedNode offset(ProgramCoordinates coordinates, std::size_t tool, const CorrectedNode& node,
                        const std::array<double, kMaxAxes>& added) const;

@@ -46,8 +46,8 @@ struct LatticeOptions {
   std::size_t most_per_axis = 100'000;  ///< along one input
 };
 
-/// What a lattice as fine as one likes would say: PointCorrection of the chosen axes, with all axes that are no input
-/// at the reference.
+/// The limit of an arbitrarily fine lattice: PointCorrection of the chosen axes, with all axes that are not inputs at
+/// the reference.
 class LatticeFunction final : public CommandCorrection {
  public:
   LatticeFunction(const Machine& machine, const ErrorSet& errors, LatticeOptions options);
@@ -77,8 +77,8 @@ std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const Err
 std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const ErrorSet& errors,
                                                const LatticeOptions& options, const CommandCorrection& function);
 
-/// Lattice over these nodes, [inputs][nodes]. What is stated of its interpolation was looked at in 4000 places between
-/// them, half of them middles of cells.
+/// Lattice over these nodes, [inputs][nodes]. Its interpolation error is the largest found at 4000 places between them,
+/// half of which are the middles of cells.
 BuiltLattice lattice_over(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options,
                           std::vector<std::vector<double>> positions);
 /// The same for another function of the inputs.

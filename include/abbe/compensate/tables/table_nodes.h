@@ -21,11 +21,11 @@ struct NodeSpacing {
   std::size_t fewest = 2;         ///< nodes
   std::size_t most = 10000;       ///< nodes that the table can have
   std::size_t places = 1000;      ///< where the difference is looked at, at least; and 16 in every interval
-  /// Where it can be done with at most twice the nodes, the step is a multiple of this (0: any step), so that it is
-  /// written in few digits; mm or rad.
+  /// The step is a multiple of this if that takes at most twice the nodes (0: any step), so that it can be written with
+  /// few digits; mm or rad.
   double step_multiple = 0;
-  /// Where a node has to be, mm or rad. The outer nodes then may lie outside, on straight continuations of the cells at
-  /// the ends, where the functions are not asked; the step is a multiple of `step_multiple` in any case.
+  /// Place that has to be a node, mm or rad. The outer nodes may then lie outside, on straight continuations of the end
+  /// cells, where the functions are not evaluated. The step is a multiple of `step_multiple` in any case.
   std::optional<double> anchor;
   /// Where the functions may have kinks (kinks_of), mm or rad. Grids with nodes on all of them are tried too.
   std::vector<double> kinks;
@@ -39,11 +39,11 @@ struct TableNodes {
   bool within = true;                       ///< every error is within its tolerance
 };
 
-/// Few evenly spaced nodes (to three parts in a hundred the fewest) that keep straight lines within the tolerance, or
-/// `most` of them.
+/// The fewest evenly spaced nodes (to three per cent) with which straight lines stay within the tolerance, or `most` of
+/// them.
 ///
-/// Near a kink straight lines are off by as much as the kink is away from a node, so that grids in general come near
-/// only with very many nodes; those on all kinks need no more than the function between them.
+/// Near a kink, the error of straight lines grows with the distance of the kink from a node. Most grids therefore need
+/// very many nodes; a grid with nodes on all kinks needs no more than the function between them.
 ///
 /// The difference is looked at in 16 places of every interval, and at no fewer than `places` in all, so that what is
 /// narrower than an interval is seen too.
@@ -52,7 +52,7 @@ TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& sp
 /// Nodes of the error motions of an axis that are straight-line tables.
 std::vector<double> kinks_of(const ErrorSet& errors, std::size_t axis);
 
-/// Exactly so many nodes; with an anchor, nodes as close as so many over the travel, or as `most` allows.
+/// Exactly this many nodes; with an anchor, nodes as close as this many over the travel, or as `most` allows.
 TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacing, std::size_t count);
 
 }  // namespace abbe

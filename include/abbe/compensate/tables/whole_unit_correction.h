@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// A control that adds corrections in whole units only, rounded to the nearest.
+/// A control that adds corrections in whole units only, rounded to the nearest one.
 class WholeUnitCorrection final : public CommandCorrection {
  public:
   /// @param unit  mm or rad, of all axes that are corrected

@@ -6,7 +6,7 @@
 
 namespace abbe {
 
-/// A page as PDF, or why there is none.
+/// A page as PDF, or the reason why there is none.
 struct PrintedPage {
   std::string pdf;        ///< the whole file; empty: there is none
   std::size_t pages = 0;  ///< sheets
@@ -30,7 +30,7 @@ struct PagePrinter {
 /// The program that prints: the one that ABBE_BROWSER names (WeasyPrint if its name begins with "weasyprint", else a
 /// browser), else the first of chromium, chromium-browser, google-chrome, google-chrome-stable, chromium-headless-shell
 /// and weasyprint on the PATH.
-/// @throws InputError if the variable names what is no program
+/// @throws InputError if the variable does not name a program
 PagePrinter find_page_printer();
 
 /// Prints a page that needs no other file, by headless Chromium or WeasyPrint: in a temporary folder of its own,
@@ -45,13 +45,13 @@ PrintedPage print_page(const std::string& html, const PrintSettings& settings);
 /// Number of sheets of a PDF as these programs write it: the largest count of a tree of pages; 0 if there is none.
 std::size_t pdf_page_count(const std::string& pdf);
 
-/// Writes another day into a PDF in place of the moments when it was made and changed; its length stays. A moment
-/// without the "D:" that the format asks for gets it, as WeasyPrint 57 leaves it out.
+/// Replaces the creation and modification times of a PDF by a date; the length of the file does not change. The "D:"
+/// that the format requires is added where it is missing, as with WeasyPrint 57.
 /// @param date  "20261128", or empty: blanks in place of both entries
 void set_pdf_date(const std::string& date, std::string& pdf);
 
-/// Numbers the nodes of a page, "(node00000053)", from 1 in their order, in place. Chromium counts on through what it
-/// does besides, so that the same page has other numbers on a busy machine.
+/// Renumbers the nodes of a page, "(node00000053)", from 1 in their order, in place. Chromium's counter also counts its
+/// other work, so on a busy machine the same page gets other numbers.
 void number_pdf_nodes(std::string& pdf);
 
 }  // namespace abbe

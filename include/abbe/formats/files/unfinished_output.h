@@ -64,9 +64,9 @@ class UnfinishedOutput {
   UnfinishedOutput& operator=(const UnfinishedOutput&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Of the file, open for writing, or of the folder.
+  /// Descriptor of the file, open for writing, or of the folder.
   int descriptor() const { return held_.number(); }
-  /// It got its own name, or was removed.
+  /// The file or folder has been renamed to its final name, or removed.
   void release();
 
  private:
@@ -77,14 +77,14 @@ class UnfinishedOutput {
   Descriptor held_;
 };
 
-/// Calls `found` with what writers of this output left behind and nobody works on any more, and its lock is held
-/// meanwhile.
+/// Calls `found` with everything that earlier writers of this output left behind and nobody works on any more; its lock
+/// is held meanwhile.
 /// @param output  resolved
 /// @param ending  kUnfinished or kOlder
 void for_abandoned(const std::filesystem::path& output, std::string_view ending,
                    const std::function<void(const std::filesystem::path&)>& found);
 
-/// OUTPUT.unfinished of an output: where long work is kept until that is whole.
+/// OUTPUT.unfinished of an output: where long work is kept until the output is complete.
 std::filesystem::path unfinished_name(const std::filesystem::path& output);
 
 /// Locks an open file or folder, for as long as it is open. @returns whether nobody else had it locked

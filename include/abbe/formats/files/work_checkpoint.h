@@ -24,7 +24,7 @@ struct CheckpointOptions {
 /// Finished blocks of numbered work in the file OUTPUT.unfinished, so that the same command goes on from there after it
 /// was killed (docs/scale.md).
 ///
-/// Short work makes no file. A file is locked as long as somebody works on it. Blocks are used again only if their work
+/// Short work makes no file. A file is locked while a process works on it. Blocks are used again only if their work
 /// has the same fingerprint; what a killed process has written in part is not used.
 class WorkCheckpoint {
  public:
@@ -41,7 +41,7 @@ class WorkCheckpoint {
   /// @throws InputError if another process works on the file, it is none of this kind, or cannot be written
   void work(const NumberedWork& work, const WorkDriver& driver);
 
-  /// The output is whole: the file goes.
+  /// Call when the output is complete: removes the file.
   void remove();
 
   const std::filesystem::path& path() const { return path_; }

@@ -31,7 +31,7 @@ class PrintableText {
  public:
   /// What can be shown now.
   std::string next(std::string_view piece);
-  /// The beginning of a character whose end never came.
+  /// What is left at the end of the text: a character cut short.
   std::string rest();
 
  private:

@@ -14,10 +14,10 @@ struct RobustOptions {
   std::uint64_t seed = 1;  ///< of the random subsets; same seed, same answer
 };
 
-/// Shape that up to about 40 % wrong points do not move.
+/// Fits a shape robustly: up to about 40 % of outliers do not affect it.
 ///
 /// Start: random subsets, least median of distances. Then iteratively reweighted least squares at a scale from the
-/// median absolute distance (MAD / 0.6745), until shape and scale rest. Other shapes of as many points, and the best
+/// median absolute distance (MAD / 0.6745), until shape and scale settle. Other shapes of as many points, and the best
 /// shape of the points that are left out, are rivals; the status is `ambiguous` where one explains the points as well.
 /// Source: P. J. Rousseeuw, J. Am. Stat. Assoc. 79 (1984) 871; P. J. Huber, Robust Statistics (1981).
 ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions& robust = {},

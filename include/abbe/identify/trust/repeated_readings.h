@@ -17,7 +17,7 @@ struct RepeatedReadings {
   bool are_copies() const;            ///< too many for independent readings
 };
 
-/// Counts readings that repeat an earlier one to the last digit: rows that stand twice, one reading used for two.
+/// Counts readings that repeat an earlier one to the last digit: duplicated rows, one reading used twice.
 ///
 /// Two readings with standard uncertainty u that are written in steps of q agree with probability q / (2 sqrt(pi) u).
 /// The step is that of the decimals in mm, inch, rad, deg or arcsec, times five because some instruments count in
@@ -25,7 +25,7 @@ struct RepeatedReadings {
 /// @param observations  stand anywhere; only the ratio of deviation to residual is used
 RepeatedReadings repeated_readings(const Observations& observations, const ReadingFacts& facts);
 
-/// What to say about copies, one sentence.
+/// A sentence about copies for the user.
 std::string copies_text(const RepeatedReadings& repeated, const ReadingFacts& facts);
 
 }  // namespace abbe

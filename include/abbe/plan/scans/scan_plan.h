@@ -65,10 +65,10 @@ struct HalfSpace {
   bool holds(const Eigen::Vector3d& point) const { return normal.dot(point) >= offset; }
 };
 
-/// Kept from the largest angle where directions are chosen, rad: normals of a mesh are not those of the part.
+/// Margin to the largest angle when directions are chosen, rad: normals of a mesh are not exactly those of the part.
 inline constexpr double kScanAngleMargin = kDegree;
-/// Range of ScanPlanOptions::largest_angle: less leaves nothing beside the margin, and along the surface nothing is
-/// seen.
+/// Range of ScanPlanOptions::largest_angle: the margin would use up a smaller angle, and a beam along the surface sees
+/// nothing.
 inline constexpr double kSmallestScanAngle = 2 * kScanAngleMargin, kLargestScanAngle = 85 * kDegree;
 /// Range of ScanPlanOptions::crease_angle.
 inline constexpr double kSmallestCrease = kDegree, kLargestCrease = 90 * kDegree;
@@ -96,8 +96,8 @@ struct ScanPlanOptions {
 enum class ScanPathKind { rotary, raster, free };
 const char* scan_path_name(ScanPathKind kind);
 
-/// Why a place is not measured. Of all allowed directions of the beam the one that comes farthest counts: it must see
-/// the place, the probe must fit, the axes must reach.
+/// Why a place is not measured. A beam direction has to pass, in order: line of sight, clearance of the probe, travel
+/// of the axes. The direction that passes most of them counts.
 enum class ScanObstacle : std::uint8_t {
   none,
   angle,             ///< seen at more than the largest angle from the normal only
@@ -160,7 +160,7 @@ struct ScanPlan {
 
 /// Paths over all faces of a part for a displacement probe along the tool's direction.
 ///
-/// Faces are what creases separate. A face whose normals lie within the largest angle of their mean is scanned as a
+/// Creases separate faces. A face whose normals lie within the largest angle of their mean is scanned as a
 /// raster; one of revolution about a line to which a rotary axis of the machine can be brought, within half of the
 /// largest angle, on circles about that line; all others freely. The functional point of the machine (the middle of the
 /// probe's range) goes along the surface, so the axis along the beam follows it.

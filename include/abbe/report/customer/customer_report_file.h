@@ -22,7 +22,7 @@ PrintedPage write_customer_report(const CustomerReport& report, const std::strin
 /// "report.html" of "report.pdf".
 std::filesystem::path html_beside(const std::filesystem::path& pdf);
 
-/// For the end of a command: everything else is done, and the page is there.
+/// Call it at the end of a command, when everything else is done and the page is written.
 /// @throws InputError if printing had a problem
 void require_printed(const std::filesystem::path& pdf, const std::filesystem::path& html, const PrintedPage& printed);
 
