@@ -96,7 +96,7 @@ struct ControlTableRequest {
   std::optional<std::size_t> encoder;        ///< --encoder, siemens-eec: measuring system, 0 or 1; else 0
   std::optional<std::size_t> first_table;    ///< --first-table, siemens-cec: 0 to 999; else 0
   bool negate = false;                       ///< --negate: the other sign, where the control's is not known for sure
-  bool negate_own = false;                   ///< --negate-own, heidenhain-kinematics-comp: the same of own columns
+  bool negate_own = false;                   ///< --negate-own, heidenhain-kinematics-comp: the same for own columns
   std::optional<double> detection_unit_mm;   ///< --detection-unit-um, FANUC: as many degrees for rotary axes; else 1 um
   std::vector<HeldAxis> reference_position;  ///< --reference-position, FANUC: else zero, or the next end of the travel
 

@@ -32,7 +32,7 @@ struct KinematicValuesRequest {
   /// 0
   std::vector<HeldAxis> at{};
   std::optional<double> limit_mm;   ///< --limit-um: a larger change of a length is refused; above zero
-  std::optional<double> limit_rad;  ///< --limit-urad: the same of a direction component or an angle
+  std::optional<double> limit_rad;  ///< --limit-urad: the same for a direction component or an angle
   double least_reduction = 0.01;    ///< --least-reduction-percent: share of the error below which values are refused
 };
 

@@ -18,7 +18,7 @@ struct KinematicValuesReport {
   std::vector<std::string> written;  ///< names of files
 };
 
-/// For people; lines with their ends.
+/// For people; complete lines.
 std::string kinematic_values_text(const KinematicValuesReport& report);
 
 /// For programs; units in the keys.

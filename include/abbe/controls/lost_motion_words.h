@@ -6,7 +6,7 @@
 
 namespace abbe {
 
-/// The lines of linuxcnc_backlash() for the ini file, with their ends; empty where there are none.
+/// The lines of linuxcnc_backlash() for the ini file, complete lines; empty where there are none.
 std::string linuxcnc_backlash_text(const Machine& machine, const ErrorSet& errors);
 
 }  // namespace abbe

@@ -59,7 +59,7 @@ struct WriterRequest {
   std::size_t encoder = 0;                 ///< siemens-eec
   std::size_t first_table = 0;             ///< siemens-cec
   bool negate = false;                     ///< values with the other sign, where the control's is not known for sure
-  bool negate_own = false;                 ///< heidenhain-kinematics-comp: the same of the columns of axes themselves
+  bool negate_own = false;                 ///< heidenhain-kinematics-comp: the same for the columns of axes themselves
   double unit_mm = 1e-3;                   ///< FANUC: detection unit; of rotary axes as many degrees
   std::vector<double> reference_position;  ///< [axes] FANUC: reference position of the control, mm or rad
 };

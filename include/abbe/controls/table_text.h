@@ -18,7 +18,7 @@ struct TableReport {
   std::vector<std::string> written;  ///< names of files
 };
 
-/// For people; lines with their ends.
+/// For people; complete lines.
 std::string table_text(const TableReport& report);
 
 /// For programs; units in the keys.

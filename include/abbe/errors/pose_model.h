@@ -32,7 +32,7 @@ class PoseModel {
   void poses(PositionArrays positions, PointArrays point, RotationArrays rotation = {},
              std::uint8_t* covered = nullptr) const;
 
-  /// The same of the machine without errors.
+  /// The same for the machine without errors.
   void nominal_poses(PositionArrays positions, PointArrays point, RotationArrays rotation = {}) const;
 
   /// Deviation of the pose, actual minus nominal, as tool_deviation().

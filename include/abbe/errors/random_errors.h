@@ -20,7 +20,7 @@ struct RandomErrorOptions {
   bool motions = true;            ///< draw error motions
   bool locations = true;          ///< draw location errors
   double translation_um = 10;     ///< standard deviation of the first coefficient of a translation
-  double rotation_urad = 20;      ///< the same of a rotation
+  double rotation_urad = 20;      ///< the same for a rotation
   double location_um = 20;        ///< standard deviation of a location error in length
   double location_urad = 50;      ///< the same in angle
   std::vector<std::string> only;  ///< error names ("EXX", "EC0Y") to draw; empty: all valid ones

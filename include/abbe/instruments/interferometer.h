@@ -58,8 +58,8 @@ struct InterferometerSetup {
   std::vector<InterferometerComponent> components = {InterferometerComponent::length};
   std::vector<InterferometerRun> runs;  ///< at least one
   SetupNumber length_scale;             ///< indicated / true - 1 (pure number): wavelength and its compensation
-  SetupNumber straightness_scale;       ///< the same of the angle of the Wollaston prism
-  SetupNumber angle_scale;              ///< the same of the distance of the two angular reflectors
+  SetupNumber straightness_scale;       ///< the same for the angle of the Wollaston prism
+  SetupNumber angle_scale;              ///< the same for the distance of the two angular reflectors
   double length_noise = 0.05e-3;        ///< mm, standard uncertainty
   double length_noise_per_length = 0;   ///< further part, mm per mm of path, dead path included
   double straightness_noise = 0.2e-3;   ///< mm

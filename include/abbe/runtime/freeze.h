@@ -18,7 +18,7 @@ struct StateRange {
   double from = 0, to = 0;  ///< both 0: not stated
 };
 
-/// Range of a temperature that is not stated: from so much below its reference to so much above it, K. Other states
+/// Range of a temperature for which none is stated: this far below and above its reference, K. Other states
 /// must have one.
 inline constexpr double kDefaultBelow = -5, kDefaultAbove = 10;
 
@@ -40,7 +40,7 @@ struct FreezeOptions {
   std::string version;                   ///< of the program
 };
 
-/// A frozen compensation and what was found by trying it against the full model at poses all over travel and map.
+/// A frozen compensation, and its test against the full model at poses all over travel and map.
 struct FrozenCompensation {
   std::string problem;  ///< why it cannot be frozen; empty if it can
   std::vector<unsigned char> bytes;
@@ -67,7 +67,7 @@ struct FrozenCompensation {
   int worst_iterations = 0;        ///< of all calls, both directions
   std::size_t poses = 0, limited = 0, unreached = 0;  ///< tried; turn bounded; point not reached
   std::size_t points_compared = 0;      ///< poses that accuracy and difference are the largest of; 0: nothing is known
-  std::size_t directions_compared = 0;  ///< the same of accuracy_turn
+  std::size_t directions_compared = 0;  ///< the same for accuracy_turn
   std::size_t point_axes = 0;           ///< axes that take the error of the point; three are needed for all of it
 };
 

@@ -62,7 +62,7 @@ struct CampaignSetup {
   std::unique_ptr<Observations> exact_observations(const Machine& machine, const ErrorSet& errors) const;
 
   std::vector<KnownUnknown> known_unknowns() const;
-  /// The same unknowns with what they really are; simulation only.
+  /// The same unknowns with their true values; simulation only.
   std::vector<KnownUnknown> true_unknowns() const;
 };
 
@@ -74,14 +74,14 @@ struct Campaign {
   std::vector<std::string> notes;     ///< what was done, for the report's assumptions
 
   std::size_t reading_count() const;
-  /// Once find_start_values() has judged: false if readings of any place do not fit the nominal machine.
+  /// After find_start_values(): false if the readings of any station do not fit the nominal machine.
   bool is_explained() const;
 };
 
 /// True errors of a simulated study: from its file, or drawn and scaled.
 ErrorSet true_errors(const Study& study);
 
-/// True if readings are to say from which side the axes came: some axis has a reversal value, or one is identified.
+/// True if readings need the direction of approach: some axis has a reversal value, or one is identified.
 bool approach_matters(const Study& study, const ErrorSet& truth);
 
 /// Reads or simulates all readings. Start values are not yet looked for.
@@ -95,7 +95,7 @@ Campaign gather_readings(const Study& study, const JobOptions& options = {});
 /// @throws InputError
 InstrumentReadings read_held_out(const Study& study, const Campaign& campaign);
 
-/// Finds what every set-up needs to start with; appends what there is to say.
+/// Finds the start values of every set-up; appends remarks for the user.
 void find_start_values(const Machine& machine, Campaign& campaign);
 
 }  // namespace abbe

@@ -13,9 +13,9 @@ class ProcessGroup {
  public:
   virtual ~ProcessGroup() = default;
   virtual bool is_first() const = 0;
-  /// Shares the readings of the study out. Every process calls it and gets the same sums.
+  /// Distributes the readings of the study. Every process calls it and gets the same sums.
   virtual Summation summation(const Study& study) = 0;
-  /// Shares the blocks out. Every process calls it with the same work. What is there already, and
+  /// Distributes the blocks. Every process calls it with the same work. What is there already, and
   /// NumberedWork::finished, count in the first one.
   virtual void work(const NumberedWork& work) = 0;
   /// For computations that every process makes in step with the others.

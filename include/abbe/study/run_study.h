@@ -58,7 +58,7 @@ enum class StudyStep { gather, identify, map };
 /// "simulating readings" or "reading measurements", "identifying", "mapping the volumetric error".
 const char* step_words(const Study& study, StudyStep step);
 
-/// What a study is done with besides its file.
+/// Options of a run, besides the study file.
 struct RunOptions {
   bool accept_misfit = false;  ///< the result is to be used although it is distrusted; its errors file says so
   bool map = true;             ///< false: no map of the volumetric error

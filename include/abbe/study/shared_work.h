@@ -23,7 +23,7 @@ class SharedWork {
   SharedWork(const SharedWork&) = delete;
   SharedWork& operator=(const SharedWork&) = delete;
 
-  /// The others have nothing to write, and end when the first one does.
+  /// False for all other processes: they write nothing, and end when the first one does.
   bool is_first() const { return processes_ == nullptr || processes_->is_first(); }
   /// As RunOptions::summation; empty where there is one process.
   Summation summation(const Study& study) const;
@@ -31,7 +31,7 @@ class SharedWork {
   WorkDriver driver() const;
   /// Options of a job that shares its numbered work and its work in step. Not to be used after this object has ended.
   JobOptions job(std::function<void(std::size_t done, std::size_t total)> progress) const;
-  /// The output is whole: kept blocks go.
+  /// Call when the output is complete: removes the kept blocks.
   void done();
 
  private:

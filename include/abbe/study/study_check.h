@@ -22,7 +22,7 @@ struct StudyCheck {
 /// @throws Stopped
 StudyCheck check_study(const Study& study, const JobOptions& options = {});
 
-/// For people; lines with their ends.
+/// For people; complete lines.
 std::string study_check_text(const Study& study, const StudyCheck& check);
 /// For programs.
 nlohmann::ordered_json study_check_json(const Study& study, const StudyCheck& check);

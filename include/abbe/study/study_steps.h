@@ -11,7 +11,7 @@ namespace abbe {
 /// Options of the solver as the study states them.
 IdentifyOptions identify_options(const Study& study);
 
-/// What an identification is done with besides its study; as in RunOptions.
+/// Options of an identification, besides its study; as in RunOptions.
 struct IdentificationJob {
   ProgressCallback progress{};
   std::stop_token stop{};

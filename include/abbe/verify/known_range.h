@@ -10,11 +10,11 @@
 
 namespace abbe {
 
-/// Narrows a range of commands of an axis to where all its error motions are known, wherever the axes stand that it is
+/// Narrows a range of commands of an axis to where all its error motions are known, wherever the axes are that it is
 /// coupled to within their travels. If there is no such place the range stays. @returns false if it is as it was
 bool narrow_to_known_range(const Machine& machine, const ErrorSet& errors, std::size_t axis, AxisRange& range);
 
-/// The same of positions of an axis, whatever commands they have. It may become empty (from > to).
+/// The same for positions of an axis, whatever commands they have. It may become empty (from > to).
 bool narrow_to_known_positions(const ErrorSet& errors, std::size_t axis, AxisRange& range);
 
 /// Range of an axis over which all its error motions are known; the travel where it has none.

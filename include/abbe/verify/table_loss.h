@@ -54,7 +54,7 @@ struct CarriedError {
   double carried() const { return effect_before > 0 ? 1 - effect_after / effect_before : 0; }
 };
 
-/// Makes what a control would do with tables for a set of errors.
+/// Makes the correction that a control would apply with tables for a set of errors.
 using CorrectionMaker = std::function<std::unique_ptr<CommandCorrection>(const ErrorSet& errors)>;
 
 /// Every error of the set alone, before and after tables made for it alone. To first order the errors add up, and so do

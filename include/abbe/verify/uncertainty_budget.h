@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// One source of error of a result: a number that is not exactly what it is taken for.
+/// One source of uncertainty of a result: an input that is not known exactly.
 struct BudgetInput {
   std::string cause;                ///< inputs of one cause are one line of the budget
   double standard_uncertainty = 0;  ///< in the input's own unit
@@ -23,7 +23,7 @@ struct BudgetOptions {
   std::uint64_t seed = 1;
 };
 
-/// What one cause, or all of them, make of one kind of result.
+/// Contribution of one source, or of all, to one kind of result.
 struct BudgetFigure {
   double by_sensitivity = 0;  ///< standard uncertainty, root mean square over the points
   double by_monte_carlo = 0;

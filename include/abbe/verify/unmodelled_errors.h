@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// An error of a machine that a model of its errors does not hold and cannot express by those it holds.
+/// An error of a machine that is not in a model of its errors and cannot be expressed by those that are.
 struct UnmodelledError {
   std::size_t axis = 0;
   Component component = Component::X;

@@ -55,7 +55,7 @@ std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ra
 /// @param maps  of the same poses, at least one
 void keep_common_poses(std::span<ErrorMap* const> maps);
 
-/// What the maps of one machine say; maps of the same poses, each after the best fit of the datum, null if there is
+/// Figures from the maps of one machine; maps of the same poses, each after the best fit of the datum, null if there is
 /// none. Poses without a result in one of them have none in any.
 /// @param predicted  of the identified errors, with uncertainties if what is left is to be predicted
 /// @param before     of the true errors

@@ -43,7 +43,7 @@ struct PieceBound {
 
   // In addition, for axes with reversal values (docs/programs.md, "Reversal"):
   double lag = 0;        ///< mm; by how much the point is off while axes may lag by PieceMotion's dead bands
-  double lag_turn = 0;   ///< rad; the same of the tool's direction
+  double lag_turn = 0;   ///< rad; the same for the tool's direction
   double axis_bend = 0;  ///< tool centre: |second derivative by s| of the commands of X, Y, Z; mm
 };
 

@@ -14,7 +14,7 @@ namespace abbe {
 /// empty
 std::string read_text_file(const std::filesystem::path& path);
 
-/// The same of one of our own kinds of files. @param ending  of its names: ".machine.toml"
+/// The same for one of our own kinds of files. @param ending  of its names: ".machine.toml"
 /// @throws InputError also if the name says that the file is of another kind
 std::string read_file_of_kind(const std::filesystem::path& path, std::string_view ending);
 

@@ -42,7 +42,7 @@ bool is_in_utf8(std::string_view bytes);
 ///   unpacks to more than the limit
 ForeignText decode_foreign_text(std::string_view bytes, const std::string& file,
                                 const ForeignTextOptions& options = {});
-/// The same of a file. @throws InputError also if it cannot be read or is empty
+/// The same for a file. @throws InputError also if it cannot be read or is empty
 ForeignText read_foreign_text(const std::filesystem::path& path, const ForeignTextOptions& options = {});
 
 }  // namespace abbe

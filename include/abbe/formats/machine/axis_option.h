@@ -30,7 +30,7 @@ AxisNumbers axis_numbers_option(const Machine& machine, const std::string& optio
 /// @throws InputError
 HeldAxis axis_option(const Machine& machine, const std::string& option, const std::string& text);
 
-/// The same of an option that may be given several times.
+/// The same for an option that may be given several times.
 std::vector<HeldAxis> axis_options(const Machine& machine, const std::string& option,
                                    const std::vector<std::string>& texts);
 

@@ -40,7 +40,7 @@ void add_ageing(const Machine& machine, double days, ErrorsFile& file);
 ErrorsFile read_errors_at(const std::filesystem::path& path, const Machine& machine,
                           const std::vector<std::string>& states, StatesOfErrors not_given = StatesOfErrors::refused);
 
-/// The same of errors that have been read.
+/// The same for errors that have been read.
 /// @param option  how the user calls it, for the error: "--state"
 /// @param path    of the file, for messages
 ErrorsFile errors_at_options(const Machine& machine, ErrorsFile file, const std::string& option,

@@ -28,7 +28,7 @@ struct InstrumentFileForm {
   InstrumentFile (*read)(const std::filesystem::path& path, const Machine& machine,
                          const std::shared_ptr<const Instrument>& device, const std::string& setup,
                          bool noise_from_data, const MeasurementOptions& options);
-  /// The same of text. @param file  name for messages
+  /// The same for text. @param file  name for messages
   InstrumentFile (*parse)(std::string_view content, const std::string& file, const Machine& machine,
                           const std::shared_ptr<const Instrument>& device, const std::string& setup,
                           bool noise_from_data, const MeasurementOptions& options);

@@ -10,7 +10,7 @@ namespace abbe {
 /// True if the contents begin like a STEP file (ISO 10303-21).
 bool is_step(std::string_view contents);
 
-/// The same of a file. @throws InputError if it cannot be read
+/// The same for a file. @throws InputError if it cannot be read
 bool is_step_file(const std::filesystem::path& path);
 
 /// Where abbe-step is: the value of the environment variable ABBE_STEP_PROGRAM where that is set, else beside the

@@ -58,7 +58,7 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
 
 /// Line of a data row (from 0), counted from 1, for messages.
 std::size_t csv_line(std::string_view text, std::size_t row);
-/// The same of all data rows. @return [rows]
+/// The same for all data rows. @return [rows]
 std::vector<std::size_t> csv_lines(std::string_view text);
 
 /// Text as a field: in quotes if it has to be.

@@ -148,7 +148,7 @@ struct ReflectingPlane {
 /// Columns of a reading's gradient.
 namespace polygon_column {
 constexpr int motion = 0;          ///< eps_x, eps_y, eps_z, delta_x, delta_y, delta_z
-constexpr int mount = 6;           ///< the same of the mount
+constexpr int mount = 6;           ///< the same for the mount
 constexpr int face = 12;           ///< azimuth_error, tilt, distance; of readings along z: tilt_x, tilt_y, height
 constexpr int sensor_angles = 15;  ///< 3
 constexpr int position = 18;       ///< 3

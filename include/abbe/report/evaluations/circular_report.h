@@ -10,7 +10,7 @@
 
 namespace abbe {
 
-/// What a circular test was asked, beside its readings.
+/// Settings of a circular test, besides its readings.
 struct CircularRequest {
   std::string file;
   std::string plane = "XY";  ///< first and second axis

@@ -14,7 +14,7 @@
 
 namespace abbe {
 
-/// What a comparison of a scan with its part was asked.
+/// Settings of a comparison of a scan with its part.
 struct DeviationRequest {
   std::string scan, part;  ///< names of the files
   std::string transform;   ///< file of the scan's pose on the part; empty: the scan as it stands
@@ -42,7 +42,7 @@ struct StreamedScan {
   const SampledPoint* largest = nullptr;  ///< likewise
 };
 
-/// The same of a scan that was read in blocks, with the bounds of what is not exact.
+/// The same for a scan that was read in blocks, with the bounds of what is not exact.
 /// @param compared  deviation: of all points; counted_mm: of those that are shown
 /// @param range_mm  of the full colour
 EvaluationReport deviation_report(const DeviationRequest& request, const StreamedScan& scan, const MeshFile& part,

@@ -112,7 +112,7 @@ struct EvaluationPlot {
   bool beside = false;   ///< one of many: the page shows the narrow layout, two in a row
 };
 
-/// All that an evaluation by a standard has to say, whatever the standard.
+/// Everything that an evaluation reports, for any standard.
 struct EvaluationReport {
   std::string kind;                                        ///< "positioning": the subcommand
   std::string title;                                       ///< "Positioning of x.csv"

@@ -10,7 +10,7 @@
 
 namespace abbe {
 
-/// What a fit was asked, beside its points.
+/// Settings of a fit, besides its points.
 struct FitRequest {
   std::string title;  ///< "Fit of x.csv"
   FitChoice choice;

@@ -33,7 +33,7 @@ EvaluationReport positioning_report(const PositioningEvaluation& evaluation, boo
                                     const PositioningUncertainty* uncertainty,
                                     const PositioningCorrection* correction = nullptr);
 
-/// Something that ISO 230-2 asks of targets and runs and readings do not have.
+/// A requirement of ISO 230-2 on targets and runs that readings do not meet.
 struct PositioningShortfall {
   enum class Kind {
     few_runs,      ///< fewest
@@ -45,10 +45,10 @@ struct PositioningShortfall {
   std::vector<std::string> numbers;  ///< in the order above
 };
 
-/// What there is of that, in the order above.
+/// All such requirements, in the order above.
 std::vector<PositioningShortfall> positioning_shortfalls(const PositioningEvaluation& evaluation, bool rotary);
 
-/// The same in words; empty if all is there.
+/// The same in words; empty if all are met.
 std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluation, bool rotary);
 
 /// The target positions for programs: one object each, units in the keys.

@@ -13,7 +13,7 @@ namespace abbe {
 EvaluationReport rotation_report(const std::string& file, const RotationOptions& options,
                                  const RotationReadings& readings, const RotationResult& result);
 
-/// With what the symbols of the figures of an error motion begin: "radial_x1".
+/// First part of the symbols of the figures of an error motion: "radial_x1".
 const char* error_motion_symbol(AxisErrorMotionKind kind);
 
 }  // namespace abbe

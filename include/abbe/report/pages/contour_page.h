@@ -12,7 +12,7 @@ namespace abbe {
 nlohmann::json contour_sections_block(const SectionOptions& options, const std::vector<SectionReadings>& sections,
                                       const std::vector<SectionAnswer>& answers);
 
-/// The same of measured points, those beside the curve with a distance across it.
+/// The same for measured points, those beside the curve with a distance across it.
 /// @param joined  they lie on one piece: a line may join them
 nlohmann::json contour_points_block(const ContourPointsEvaluation& evaluated, bool joined);
 

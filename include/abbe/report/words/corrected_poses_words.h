@@ -13,7 +13,7 @@ std::string pose_words(const Machine& machine, const PoseList& poses, std::size_
 /// Corrected commands as CSV: a row for each pose with its status and what is left; what is not known is empty.
 std::string poses_csv(const Machine& machine, const CorrectedPoses& result);
 
-/// What was found, for people; lines with their ends.
+/// What was found, for people; complete lines.
 /// @param leave_out_factor  as it was asked for
 std::string poses_text(const Machine& machine, const PoseList& poses, const CorrectedPoses& result,
                        double leave_out_factor);

@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// A report for people: facts, figures with uncertainties and verdicts on tolerances, notes; lines with their ends.
+/// A report for people: facts, figures with uncertainties and verdicts on tolerances, notes; complete lines.
 std::string evaluation_text(const EvaluationReport& report);
 
 /// Enters tolerances, "A_um=10", into the figures.

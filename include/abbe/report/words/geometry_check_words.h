@@ -7,7 +7,7 @@
 
 namespace abbe {
 
-/// What was counted in a file, for people; lines with their ends.
+/// What was counted in a file, for people; complete lines.
 std::string mesh_text(const CheckedMesh& mesh);
 std::string cloud_text(const CheckedCloud& checked);
 

@@ -10,7 +10,7 @@
 
 namespace abbe {
 
-/// A tool path for people: moves, times, what it misses, ranges of the axes, jumps; lines with their ends.
+/// A tool path for people: moves, times, what it misses, ranges of the axes, jumps; complete lines.
 std::string path_text(const Machine& machine, const ToolPath& path, const ToolPathMiss& miss);
 
 /// The same for programs; units in the keys.

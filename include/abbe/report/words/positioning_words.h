@@ -24,7 +24,7 @@ struct PlacedWorkpiece {
 nlohmann::ordered_json positions_json(const std::string& file, const ScannerPosition& scanner,
                                       const PlacedWorkpiece* workpiece);
 
-/// The same for people, where both have a position; lines with their ends.
+/// The same for people, where both have a position; complete lines.
 std::string positions_text(const std::string& file, const ScannerPosition& scanner, const PlacedWorkpiece* workpiece);
 
 }  // namespace abbe

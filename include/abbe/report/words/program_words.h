@@ -15,18 +15,18 @@
 
 namespace abbe {
 
-/// What a program may meet and still be written, by its name for --allow.
+/// A problem with which a program may still be written, by its name for --allow.
 struct AllowedProblems {
   bool not_covered = false, outside_travel = false, held_start = false, position_left = false, not_converged = false;
   bool not_proven = false;
 };
 
-/// What a corrected program may become and take.
+/// Limits of the size and the time of a corrected program.
 struct ProgramLimits {
   double megabytes = 0, minutes = 0;
 };
 
-/// What was asked of a correction, as far as its report says it.
+/// Settings of a correction that its report states.
 struct ProgramWordsRequest {
   std::string program;          ///< name of its file
   std::string output;           ///< of the corrected program
@@ -57,7 +57,7 @@ std::string given_up_words(const std::string& program, const ProgramLimits& limi
 std::vector<std::string> reasons_to_refuse(double limit_um, const AllowedProblems& allowed, const Machine& machine,
                                            const ProgramReport& report);
 
-/// What was done, for people; lines with their ends.
+/// What was done, for people; complete lines.
 std::string program_text(const ProgramWordsRequest& request, const Machine& machine, const CorrectedProgram& result);
 
 /// The same for programs; units in the keys.

@@ -17,7 +17,7 @@ std::string workpiece_line(const WorkpieceExpansion& workpiece, double coldest, 
 void add_workpiece(const Machine& machine, const WorkpieceExpansion& workpiece, double coldest, double warmest,
                    nlohmann::ordered_json& json);
 
-/// The same of a workpiece at one temperature, with the uncertainties that are stated; nothing without a workpiece.
+/// The same for a workpiece at one temperature, with the uncertainties that are stated; nothing without a workpiece.
 std::string workpiece_line(const std::optional<WorkpieceExpansion>& workpiece);
 void add_workpiece(const std::optional<WorkpieceExpansion>& workpiece, nlohmann::ordered_json& json);
 

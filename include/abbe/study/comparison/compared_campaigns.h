@@ -70,14 +70,14 @@ struct CompareRequest {
 /// @param machine_file  of all of them; empty: machine.toml of each results folder
 /// @throws InputError naming the file, or --machine for an errors file without a machine
 CompareRequest read_campaigns(const std::vector<std::string>& campaigns, const std::string& machine_file);
-/// The same of one campaign. @param machine  absent: machine.toml of its results folder
+/// The same for one campaign. @param machine  absent: machine.toml of its results folder
 IdentifiedCampaign read_campaign(const std::string& path, const std::optional<Machine>& machine,
                                  StatesOfErrors states = StatesOfErrors::refused);
-/// Makes names that are given twice different: by their paths, and if these are the same too, by a number.
+/// Makes duplicate names unique: by their paths, and if these are equal too, by a number.
 /// @param paths  [campaigns] or other words for them
 void make_names_different(std::vector<IdentifiedCampaign>& campaigns, const std::vector<std::string>& paths);
 
-/// What is said of the change of an error.
+/// Verdict on the change of an error.
 enum class ChangeVerdict {
   changed,          ///< significant with the others of its pair (Holm)
   not_significant,  ///< explained by the uncertainties
@@ -146,7 +146,7 @@ struct ComparedPair {
   std::size_t count(ChangeVerdict verdict) const;
 };
 
-/// Campaigns against each other. It needs nothing of the request that it answers.
+/// Campaigns against each other. It holds no reference to the request.
 struct ComparedCampaigns {
   Machine machine;                 ///< of the first campaign, with the travel that all have
   std::vector<std::string> names;  ///< of the campaigns, each once

@@ -60,7 +60,7 @@ struct CommandsRequest {
   std::optional<double> limit_um;  ///< --limit-um: larger corrections of the point are refused; above zero
 };
 
-/// Corrected commands, and what is left. They need nothing of the request that they answer.
+/// Corrected commands, and what is left. They hold no reference to the request.
 struct CorrectedCommands {
   Machine machine;
   PoseList poses;               ///< of the request
@@ -81,7 +81,7 @@ CorrectedCommands correct_commands(const CommandsRequest& request);
 /// CSV: a row for each pose with its status and what is left.
 std::string corrected_commands_csv(const CorrectedCommands& result);
 
-/// For people; lines with their ends.
+/// For people; complete lines.
 std::string corrected_commands_text(const CorrectedCommands& result);
 
 /// For programs; units in the keys. @param output  name of the file of the commands

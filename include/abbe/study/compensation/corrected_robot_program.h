@@ -80,7 +80,7 @@ struct CorrectedRobotProgram {
 /// @throws InputError for a machine or errors that do not fit the program, and for what is out of range in the request
 CorrectedRobotProgram correct_robot_program(const RobotProgramRequest& request);
 
-/// For people; lines with their ends. @param output  name of the file of the corrected program
+/// For people; complete lines. @param output  name of the file of the corrected program
 std::string corrected_robot_text(const RobotProgramRequest& request, const CorrectedRobotProgram& result,
                                  const std::string& output, bool written);
 

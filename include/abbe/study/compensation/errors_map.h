@@ -57,7 +57,7 @@ struct ErrorsMapRequest {
   bool fit_datum = true;  ///< --keep-datum: false; displacements with the workpiece where it is
 };
 
-/// Volumetric error at poses, in the workpiece frame. It needs nothing of the request that it answers.
+/// Volumetric error at poses, in the workpiece frame. It holds no reference to the request.
 struct ErrorsMap {
   Machine machine;
   StatedPoses stated;
@@ -83,7 +83,7 @@ ErrorsMap map_errors(const ErrorsMapRequest& request, const JobOptions& options 
 /// As map files hold it.
 MapData errors_map_data(const ErrorsMap& map);
 
-/// For people: figures, lines with their ends.
+/// For people: figures, in complete lines.
 std::string errors_map_text(const ErrorsMap& map);
 
 /// For programs; units in the keys.

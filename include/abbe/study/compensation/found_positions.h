@@ -54,7 +54,7 @@ PositionsRequest read_positions_request(const std::string& file, const MeshFileO
 PositionsRequest read_positions_request(const std::string& file,
                                         const std::function<MeshFile(const std::string& part)>& read_part);
 
-/// Where they stand. It needs nothing of the request that it answers.
+/// Where they stand. It holds no reference to the request.
 struct FoundPositions {
   std::string file;
   ScannerPosition scanner;
@@ -69,7 +69,7 @@ struct FoundPositions {
 /// @throws InputError for a workpiece on a mesh without that mesh or its scan; Stopped where that was asked for
 FoundPositions find_positions(const PositionsRequest& request, const JobOptions& options = {});
 
-/// For people, where all have a position; lines with their ends.
+/// For people, where all have a position; complete lines.
 std::string found_positions_text(const FoundPositions& found);
 
 /// For programs; units in the keys. It says so where there is no position.

@@ -63,7 +63,7 @@ struct FreezeRequest {
   std::optional<double> limit_um;  ///< --limit-um: larger corrections of the tool are refused; above zero
 };
 
-/// Frozen errors, and what was found by trying them. They need nothing of the request that they answer.
+/// Frozen errors, and the results of their test. They hold no reference to the request.
 struct FrozenErrors {
   Machine machine;
   std::string errors_file;
@@ -83,14 +83,14 @@ struct FrozenErrors {
 /// @throws InputError for errors that cannot be frozen on this machine, and for what is out of range in the request
 FrozenErrors freeze_errors(const FreezeRequest& request);
 
-/// What became of the file, for the texts.
+/// What happened to the file, for the texts.
 struct FrozenOutput {
   std::string file = {};
   bool written = true;
   bool dry_run = false;  ///< not written because that was not wanted
 };
 
-/// For people: what was found, and the lines of LinuxCNC for lost motion; lines with their ends.
+/// For people: what was found, and the lines of LinuxCNC for lost motion; complete lines.
 std::string frozen_errors_text(const FrozenErrors& frozen, const FrozenOutput& file);
 
 /// For programs; units in the keys.

@@ -23,7 +23,7 @@ struct CheckedFrozenFile {
 /// @throws InputError for bytes that a controller would refuse
 CheckedFrozenFile check_frozen_file(std::string_view bytes, const std::string& file);
 
-/// For people, as `abbe check` prints it; lines with their ends.
+/// For people, as `abbe check` prints it; complete lines.
 std::string frozen_file_text(const CheckedFrozenFile& frozen);
 
 /// For programs; units in the keys.

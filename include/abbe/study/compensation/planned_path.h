@@ -61,7 +61,7 @@ struct PathRequest {
   double tolerance = 0;         ///< --tolerance-um: of the tool from the lines between the points; 0: no poses inserted
 };
 
-/// Commands that follow the curve, or the reason why there are none. They need nothing of the request.
+/// Commands that follow the curve, or the reason why there are none. They hold no reference to the request.
 struct PlannedPath {
   Machine machine;  ///< calibrated, with the workpiece in place
   std::string curve_file, placement_file;
@@ -92,7 +92,7 @@ PlannedPath plan_path(const PathRequest& request);
 /// @throws InputError for another extension
 std::string planned_path_file(const PlannedPath& planned, const std::string& name, PathProgramOptions options = {});
 
-/// For people: moves, times, what the path misses, ranges of the axes; lines with their ends.
+/// For people: moves, times, what the path misses, ranges of the axes; complete lines.
 std::string planned_path_text(const PlannedPath& planned);
 
 /// For programs; units in the keys.

@@ -37,7 +37,7 @@ void set_program_start(const Machine& machine, const WordAxes& words, const Held
 /// Problems by their names for --allow, such as "not-covered". @throws InputError for any other name
 AllowedProblems allowed_problems(std::span<const std::string> names);
 
-/// Limits unless others are stated; any useful program stays within them. @param size  of the program, bytes
+/// Default limits; any useful program stays within them. @param size  of the program, bytes
 ProgramLimits default_program_limits(std::size_t size);
 
 }  // namespace abbe

@@ -48,7 +48,7 @@
 
 namespace abbe {
 
-/// One of the tests that there are.
+/// One of the available tests.
 using TestToEvaluate = std::variant<PositioningTest, DiagonalsTest, CircularTest, RotationTest, StraightnessTest,
                                     SquarenessTest, SectionsTest, ContourPointsTest, LinkageTest, EtveTest,
                                     SpindleDistortionTest, AxisDistortionTest, LocationDistortionTest>;
@@ -69,17 +69,17 @@ using EvaluatedNumbers =
                  Squareness, SectionsEvaluation, ContourPointsEvaluation, LinkageEvaluation, EtveEvaluation,
                  SpindleDistortion, AxisDistortion, LocationDistortion>;
 
-/// What the readings say. It needs nothing of the request that it answers.
+/// Result of a test. It holds no reference to the request.
 struct Evaluation {
   EvaluatedNumbers found;   ///< of the kind of the test
   EvaluationReport report;  ///< with the tolerances of the request
-  /// Why the figures are not those that were asked for, in words; empty: they are. Tolerances are no reason: the report
+  /// Why the figures are not those requested; empty: they are. Tolerances are no reason: the report
   /// says which of them are exceeded.
   std::string refused;
-  /// More for a results folder than evaluation_files() has: name, contents.
+  /// Further files of the results folder, besides evaluation_files(): name, contents.
   std::vector<std::pair<std::string, std::string>> files;
 
-  /// Whether the figures are those that were asked for and exceed no tolerance.
+  /// Whether the figures are those requested and exceed no tolerance.
   bool is_ok() const { return refused.empty() && !report.exceeds_tolerance(); }
 };
 

@@ -27,9 +27,9 @@ struct ExpansionNumbers {
   double common_temperature_uncertainty = kNotStated;  ///< --u-common-temperature-K
 };
 
-/// All of a positioning test, where the coefficients are among positioning_contributions().
+/// Those of a positioning test; its coefficients are among positioning_contributions().
 std::span<const TestNumber<ExpansionNumbers>> positioning_expansion_numbers();
-/// All of a circular test, which has no fixed points.
+/// Those of a circular test, which has no fixed points.
 std::span<const TestNumber<ExpansionNumbers>> circular_expansion_numbers();
 
 /// The expansion that numbers state, and its temperatures.

@@ -27,7 +27,7 @@ struct LinkageTest {
   std::string machine_file;                     ///< its name for messages
 };
 
-/// How an uncertainty of the five steps is called.
+/// Name of an uncertainty of the five steps.
 struct LinkageAccuracyName {
   const char* option;  ///< of `abbe evaluate linkage`, also in notes: "--u-x-um"
   Quantity quantity;

@@ -10,7 +10,7 @@
 
 namespace abbe {
 
-/// Which terms with states the readings speak for, and what is identified because of that.
+/// Terms with states that the readings support, and what is identified as a result.
 struct ChosenTerms {
   std::vector<std::string> candidates;  ///< "EXX*ambient", in the order of the study
   std::vector<std::size_t> most;        ///< [candidates] levels that it could have had

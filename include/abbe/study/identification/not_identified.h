@@ -11,7 +11,7 @@ namespace abbe {
 struct Study;
 struct StudyResult;
 
-/// Errors with the same answer to what would show them.
+/// Errors that the same measurement would show.
 struct NotIdentifiedRemedy {
   std::vector<std::string> errors;
   bool by_readings = false;  ///< the readings at hand show them once they are identified too
@@ -38,10 +38,10 @@ NotIdentified find_not_identified(const Study& study, const StudyResult& result,
 /// "EXX, all error motions of Y, squareness EC0Y": short.
 std::string not_identified_names(const Study& study, const NotIdentified& found);
 
-/// One or two sentences for the warnings; there are some.
+/// One or two sentences for the warnings. @pre there are such errors
 std::string not_identified_text(const Study& study, const StudyResult& result);
 
-/// What stands beside an uncertainty that does not cover them.
+/// Remark next to an uncertainty that does not cover them.
 inline constexpr const char* kIdentifiedErrorsOnly = "identified errors only";
 
 nlohmann::ordered_json not_identified_json(const Study& study, const StudyResult& result);

@@ -24,7 +24,7 @@ struct UnexplainedReadings {
   std::string words() const;
 };
 
-/// What the nominal machine says of the readings of one set-up.
+/// How well the nominal machine explains the readings of one set-up.
 struct JudgedReadings {
   std::size_t places = 0;                        ///< that could be judged
   std::vector<UnexplainedReadings> unexplained;  ///< those among them that do not fit

@@ -64,7 +64,7 @@ struct ImportRequest {
   int threads = 0;                       ///< 0: all; the result does not depend on it
 };
 
-/// What a table became. It needs nothing of the request that it answers.
+/// An imported table. It holds no reference to the request.
 struct ImportedTable {
   std::string file;
   TextEncoding encoding = TextEncoding::utf8;
@@ -97,9 +97,9 @@ ImportedTable import_table(const ImportRequest& request);
 /// The mapping as a file, with the reasons as comments; import_table() with it gives the same CSV.
 /// @throws InputError if the file has no readings
 std::string imported_mapping_text(const ImportedTable& result);
-/// For people; lines with their ends.
+/// For people; complete lines.
 std::string imported_table_text(const ImportedTable& result);
-/// What somebody has to do with a result that is not certain, for the command.
+/// What the user must do if the result is not certain, for the command.
 std::string_view what_to_do_next(const ImportedTable& result);
 /// For programs.
 nlohmann::ordered_json imported_table_json(const ImportedTable& result);

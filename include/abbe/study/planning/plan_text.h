@@ -21,7 +21,7 @@ std::string plan_csv(const Study& study, const StudyPlan& result);
 /// Predicted uncertainty over the number of readings, with grids, as a drawing.
 std::string plan_svg(const Study& study, const StudyPlan& result);
 
-/// A plan for people; lines with their ends.
+/// A plan for people; complete lines.
 std::string study_plan_text(const Study& study, const StudyPlan& result);
 
 /// The same for programs, "abbe-plan/1"; units in the keys.

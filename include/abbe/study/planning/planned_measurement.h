@@ -95,7 +95,7 @@ struct PlannedSection {
   std::size_t first = 0, count = 0;  ///< in PlannedMeasurement::readings
 };
 
-/// A program that takes readings, or the reason why there is none. It needs nothing of the request.
+/// A program that takes readings, or the reason why there is none. It holds no reference to the request.
 struct PlannedMeasurement {
   Machine machine;
   std::string readings_file, what;       ///< what: the file's word for targets, or empty
@@ -108,7 +108,7 @@ struct PlannedMeasurement {
   std::string program;  ///< empty if refused
   std::string refused;  ///< why there is no program: the readings and the obstacle; empty: there is one
 
-  /// Ways that are not straight.
+  /// Number of paths that are not straight.
   std::size_t ways_around() const;
 };
 
@@ -118,7 +118,7 @@ struct PlannedMeasurement {
 ///   measuring_program()
 PlannedMeasurement plan_measurement(const MeasurementRequest& request);
 
-/// For people: readings, sections, time, ranges of the axes; lines with their ends.
+/// For people: readings, sections, time, ranges of the axes; complete lines.
 std::string planned_measurement_text(const PlannedMeasurement& planned);
 
 /// For programs, "abbe-measuring-program/1"; units in the keys.

@@ -57,7 +57,7 @@ struct ProbingRequest {
   double beyond = 2;        ///< --over-travel-mm: how far behind the ball's surface the control gives up
 
   std::vector<Obstacle> obstacles;  ///< besides the ball
-  /// Of the stylus and what is behind it; the radius is at least that of the tip.
+  /// Stylus and what is behind it; the radius is at least that of the tip.
   ToolShape tool;
   WayOptions ways;
 
@@ -86,7 +86,7 @@ struct PlannedProbing {
 /// @throws InputError for fewer than four touches, lengths that are not finite and above zero, and as probing_program()
 PlannedProbing plan_probing(const ProbingRequest& request);
 
-/// For people; lines with their ends.
+/// For people; complete lines.
 std::string planned_probing_text(const PlannedProbing& planned);
 
 /// For programs, "abbe-probing-program/1".

@@ -59,7 +59,7 @@ RigidTransform part_placement(const Eigen::Vector3d& position_mm, const Eigen::V
 /// @throws InputError naming --beyond-plane-mm for a normal of no length and for numbers that are not finite
 HalfSpace beyond_plane(const std::array<double, 4>& plane);
 
-/// A planned scan. It needs nothing of the request that it answers.
+/// A planned scan. It holds no reference to the request.
 struct PlannedScan {
   Machine machine;
   TriangleMesh part;  ///< closed, vertices shared
@@ -81,7 +81,7 @@ PlannedScan plan_part_scan(const ScanRequest& request, const JobOptions& options
 std::string planned_scan_csv(const PlannedScan& planned);
 /// The path as an NC program.
 std::string planned_scan_program(const PlannedScan& planned, const PathProgramOptions& options = {});
-/// For people; lines with their ends.
+/// For people; complete lines.
 std::string planned_scan_text(const PlannedScan& planned);
 /// For programs; units in the keys.
 nlohmann::ordered_json planned_scan_json(const PlannedScan& planned);

@@ -187,7 +187,7 @@ struct SetupChoice {
   bool possible = false;  ///< false: no time is left for readings, or too few to determine what they can see
 };
 
-/// The best conditions of a number, and what they would be worth.
+/// The best conditions for one number of them, and what they would be worth.
 struct ConditionsOfANumber {
   std::vector<std::size_t> conditions;  ///< increasing, indices into PlannedStates::conditions()
   std::size_t readings = 0;
@@ -204,7 +204,7 @@ struct UncertaintyAtStates {
   double uncertainty = 0;      ///< mm, root mean square of the volumetric standard uncertainty over the poses
 };
 
-/// What the drift of set-ups makes of a plan.
+/// Effect of the drift of set-ups on a plan.
 struct PlanBesideDrift {
   std::vector<std::string> setups;  ///< what each of those that drift does; empty: nothing drifts
   bool determined = true;           ///< false: what is asked for cannot be told from the drift

@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// Writes everything a study has computed into its results folder, whole or not at all.
+/// Writes everything a study has computed into its results folder, completely or not at all.
 ///
 /// machine.toml, errors.toml with errors.covariance.csv, summary.json, residuals.csv, readings (simulated studies),
 /// maps/, report.html, customer-report.html (studies that state its facts),

@@ -60,7 +60,7 @@ struct UnseenPoses {
 /// @param poses  number of random poses compared with the truth
 UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::size_t poses = 1000);
 
-/// What to say about the open directions, one sentence; there are some.
+/// A sentence about the open directions. @pre there are some
 std::string open_directions_text(const UnseenPoses& unseen);
 
 }  // namespace abbe

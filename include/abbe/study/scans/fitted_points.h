@@ -61,7 +61,7 @@ struct ShapeFitRequest {
   bool page = false;                    ///< the report is to have the points on the fitted surface, for its page
 };
 
-/// A fitted shape with its report. It needs nothing of the request that it answers.
+/// A fitted shape with its report. It holds no reference to the request.
 struct FittedShape {
   ShapeFit fit;
   PointCloud points;               ///< of the request

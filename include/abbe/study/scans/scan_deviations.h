@@ -69,7 +69,7 @@ struct ScanDeviationsRequest {
   bool page = false;                    ///< the report is to have the deviations on the part, for its page
 };
 
-/// Deviations of a scan from its part, with their report. They need nothing of the request that they answer.
+/// Deviations of a scan from its part, with their report. They hold no reference to the request.
 struct ScanDeviations {
   ScanComparison compared;  ///< of a scan that was read in blocks: counted points are those that are shown
   EvaluationReport report;  ///< with the tolerances of the request

@@ -70,7 +70,7 @@ ScanRegistration register_scan(ScanRegistrationRequest request, const JobOptions
 /// The scan in the frame of the part.
 PointCloud registered_scan(const ScanRegistration& result);
 
-/// For people; lines with their ends. @param covariance  of the pose: state it too
+/// For people; complete lines. @param covariance  of the pose: state it too
 std::string scan_registration_text(const ScanRegistration& result, bool covariance = false);
 
 /// For programs; units in the keys.

@@ -69,7 +69,7 @@ struct ScannedPointsRequest {
 ProbeBeam probe_beam(const Machine& machine, const Eigen::Vector3d& zero,
                      const std::optional<Eigen::Vector3d>& direction = std::nullopt);
 
-/// What became of the readings. It needs nothing of the request that it answers.
+/// Result of the conversion. It holds no reference to the request.
 struct ScannedPoints {
   std::string machine;  ///< its name
   StateValues at_state{};
@@ -87,7 +87,7 @@ struct ScannedPoints {
 ///   asked for, without an output
 ScannedPoints write_scanned_points(const ScannedPointsRequest& request, const JobOptions& options = {});
 
-/// For people; lines with their ends.
+/// For people; complete lines.
 std::string scanned_points_text(const ScannedPoints& result);
 
 /// For programs; units in the keys.

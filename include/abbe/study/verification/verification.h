@@ -72,7 +72,7 @@ struct PieceToVerify {
   PieceTrace before, after;                 ///< without and with the compensation
 };
 
-/// What is verified, and what is asked of it; lengths in mm, angles in rad.
+/// What is verified, and the requirements; lengths in mm, angles in rad.
 ///
 /// Messages name a field by the option of `abbe verify` that sets it, given below.
 struct VerificationRequest {
@@ -121,7 +121,7 @@ struct VerificationVerdict {
   bool met = true;
 };
 
-/// What a compensation leaves. It needs nothing of the request that it answers.
+/// Errors that a compensation leaves. It holds no reference to the request.
 struct Verification {
   Machine machine;
   std::string summary;             ///< as in the request
@@ -138,7 +138,7 @@ struct Verification {
   std::vector<VerificationVerdict> verdicts;
 
   LeftOutPoses left_out() const;
-  /// Whether something that was asked for is not met.
+  /// Whether a requirement is not met.
   bool says_no() const;
 };
 

@@ -13,7 +13,7 @@ std::string verification_sentence(const Verification& result);
 /// Figures of the unseen poses, with the keys of `held_out` in docs/report-data.md.
 nlohmann::ordered_json unseen_poses_json(const CompensatedPoses& poses);
 
-/// For people: all figures, lines with their ends.
+/// For people: all figures, in complete lines.
 std::string verification_text(const Verification& result);
 
 /// For programs, "abbe-verify/1"; units in the keys.

@@ -53,7 +53,7 @@ struct ReadingsToVerify {
   std::optional<double> largest_ratio;    ///< --largest-ratio: to what the uncertainties explain; above zero
 };
 
-/// What is asked of readings, and whether they meet it.
+/// A requirement on readings, and whether they meet it.
 struct ReadingsVerdict {
   std::string name;  ///< "improvement", "consistency", "reduction" or "ratio"
   std::string text;
@@ -66,7 +66,7 @@ struct SetupResiduals {
   std::vector<double> before, after;  ///< of the nominal machine, and with the identified errors
 };
 
-/// What identified errors leave of readings. It needs nothing of the request that it answers.
+/// What identified errors leave of readings. It holds no reference to the request.
 struct VerifiedReadings {
   std::size_t readings = 0;     ///< with those left out
   std::size_t not_covered = 0;  ///< left out: some axis is where the errors are not known

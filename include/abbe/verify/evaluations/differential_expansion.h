@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// A body whose expansion is in readings of lengths: the scale (or screw) of an axis, or that of an instrument.
+/// A body whose expansion affects readings of lengths: the scale (or screw) of an axis, or that of an instrument.
 struct ExpandingBody {
   double coefficient = 0;              ///< alpha, 1/K
   double coefficient_uncertainty = 0;  ///< standard, 1/K
@@ -16,7 +16,7 @@ struct ExpandingBody {
   double fixed_point = 0;              ///< mm: position of the axis at which the body is where it is at 20 degC
 };
 
-/// What an axis and an instrument do to readings at other temperatures than 20 degC.
+/// Effect of axis and instrument on readings at temperatures other than 20 degC.
 struct DifferentialExpansion {
   ExpandingBody machine, instrument;
   double common_temperature_uncertainty = 0;  ///< standard, of what both thermometers share (a calibration), K
@@ -39,7 +39,7 @@ std::vector<PositioningReading> corrected_to_20_degC(const std::vector<Positioni
                                                      const DifferentialExpansion& expansion,
                                                      const std::vector<BodyTemperatures>& at);
 
-/// What one quantity that is not known exactly does to all readings at once.
+/// Effect of one uncertain quantity on all readings together.
 struct ExpansionContribution {
   const char* name;
   std::vector<double> standard;  ///< [readings] mm, with a sign: by one standard uncertainty of the quantity

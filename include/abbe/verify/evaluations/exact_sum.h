@@ -16,7 +16,7 @@ class ExactSum {
 
   /// @param value  finite, of at most kLargest
   void add(double value);
-  /// Adds the square, of which nothing is lost either. @param value  of at most 2^48
+  /// Adds the square, also without rounding. @param value  of at most 2^48
   void add_square(double value);
   void add(const ExactSum& other);
   /// Rounded once.

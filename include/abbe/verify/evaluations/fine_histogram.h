@@ -33,7 +33,7 @@ class FineHistogram {
   std::uint64_t count() const;
   /// Percentile as percentile() has it. @param fraction  0..1 @return zeros if there are no values
   BoundedValue percentile(double fraction) const;
-  /// The same of the amounts.
+  /// The same for the amounts.
   BoundedValue percentile_of_amounts(double fraction) const;
   /// Classes as histogram() has them; every fine class counts where its middle is.
   Histogram classes(double from, double to, std::size_t classes) const;

@@ -19,7 +19,7 @@ struct PositioningReading {
   ApproachDirection direction = ApproachDirection::positive;
 };
 
-/// What the readings at one target position say; the index of pairs is the direction of approach.
+/// Results at one target position; the index of pairs is the direction of approach.
 struct PositioningTarget {
   double position = 0;                           ///< mm or rad
   std::array<std::size_t, 2> runs{};             ///< n: readings from each side

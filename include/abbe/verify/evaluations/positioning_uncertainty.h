@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// What is known of the measurement of an axis; every entry is zero until somebody states it. mm, rad and K.
+/// Contributions to the uncertainty of the measurement of an axis; zero unless stated. mm, rad and K.
 ///
 /// A "range" is the full width of the interval in which a quantity lies with equal probability: its expanded
 /// uncertainty (k = 2) is range / sqrt(3), the 0.6 range of the simplified equations of ISO/TR 230-9.

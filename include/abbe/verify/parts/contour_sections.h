@@ -43,7 +43,7 @@ struct SectionAnswer {
 
 SectionAnswer evaluate_section(const SectionReadings& section, const SectionOptions& options);
 
-/// What all sections of a curve say.
+/// Results of all sections of a curve.
 struct SectionsEvaluation {
   std::vector<SectionAnswer> answers;  ///< [sections]
   std::size_t refused = 0;             ///< sections without an answer
@@ -60,7 +60,7 @@ SectionsEvaluation evaluate_sections(const std::vector<SectionReadings>& section
 /// Whether all sections say where on the curve they are; else their number stands for it.
 bool along_is_stated(const std::vector<SectionReadings>& sections);
 
-/// What measured points say of a commanded curve.
+/// Deviations of measured points from a commanded curve, with figures.
 struct ContourPointsEvaluation {
   std::vector<ContourDeviation> deviations;  ///< [points]
   std::vector<std::size_t> counted;          ///< points beside the curve, with a distance across it and out of it

@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-/// What a displacement or angle does while only the environment changes.
+/// Change of a displacement or angle while only the environment changes.
 struct EtveSensor {
   ThermalSensor sensor;
   SeriesRange range;     ///< over all its readings

@@ -15,7 +15,7 @@ struct WarmingRun {
   bool has_cooling() const { return end > stop; }
 };
 
-/// What a heated machine does to a displacement, a tilt or a location error. Changes are from the value at the start.
+/// Effect of heating a machine on a displacement, a tilt or a location error. Changes are from the value at the start.
 struct WarmingSensor {
   ThermalSensor sensor;
   double value_at_start = 0;    ///< mm or rad, as read
