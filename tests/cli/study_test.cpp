@@ -335,7 +335,7 @@ TEST_F(Studies, AllReadingsAtOnePoseAreSaid) {
   write_measured_study(one_pose);
   const CommandResult result = abbe({"run", "s.study.toml"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("stands still in all readings"));
+  EXPECT_THAT(result.out, HasSubstr("does not move in any reading"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out" / "errors.toml"));
 }
 

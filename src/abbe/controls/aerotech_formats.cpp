@@ -182,7 +182,7 @@ TableFormat aerotech_1d_format() {
   TableFormat format = aerotech_format();
   format.name = "aerotech-1d";
   format.kind = TableKind::axis_pairs;
-  format.what = "1-D axis calibration of Aerotech (:START), each axis by itself and for the linear axes";
+  format.what = "1-D axis calibration of Aerotech (:START): each axis corrects itself and the linear axes";
   format.convention =
       "values are corrections (minus the error), mm or degrees, of the axis behind :START at the position of the axis "
       "MASTER; the first at -OFFSET, the others every SAMPLEDIST. Straight lines between them, the end values outside";

@@ -69,7 +69,7 @@ TableFormat fanuc_pitch_format() {
   format.name = "fanuc-pitch";
   format.control = "FANUC";
   format.kind = TableKind::own_axis;
-  format.what = "stored pitch error compensation of FANUC as a parameter file, each axis by itself";
+  format.what = "stored pitch error compensation of FANUC as a parameter file: each axis corrects itself";
   format.convention =
       "steps of the correction (minus the error) from point to point in whole detection units times the magnification, "
       "zero at the reference position; straight lines between points";

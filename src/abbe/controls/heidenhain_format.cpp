@@ -50,7 +50,7 @@ TableFormat heidenhain_format() {
   format.control = "HEIDENHAIN";
   format.kind = TableKind::axis_pairs;
   format.what =
-      "compensation-value tables of HEIDENHAIN (*.COM, CONFIG.CMA), each axis by itself and for the linear axes";
+      "compensation-value tables of HEIDENHAIN (*.COM, CONFIG.CMA): each axis corrects itself and the linear axes";
   format.convention =
       "AXISPOS in mm or degrees from the machine datum; values are errors (actual minus nominal), mm or degrees; "
       "straight "

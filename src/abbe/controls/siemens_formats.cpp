@@ -51,7 +51,7 @@ TableFormat siemens_cec_format() {
   format.name = "siemens-cec";
   format.control = "SINUMERIK";
   format.kind = TableKind::axis_pairs;
-  format.what = "sag and angularity compensation of SINUMERIK ($AN_CEC), each axis by itself and for the linear axes";
+  format.what = "sag and angularity compensation of SINUMERIK ($AN_CEC): each axis corrects itself and the linear axes";
   format.convention =
       "the value is the correction (minus the error), mm or degrees, added to the position setpoint of the output axis "
       "at the setpoint of the input axis. Straight lines between points, the end values outside";
@@ -80,7 +80,7 @@ TableFormat siemens_eec_format() {
   format.name = "siemens-eec";
   format.control = "SINUMERIK";
   format.kind = TableKind::own_axis;
-  format.what = "encoder (leadscrew) error compensation of SINUMERIK ($AA_ENC_COMP), each axis by itself";
+  format.what = "encoder (leadscrew) error compensation of SINUMERIK ($AA_ENC_COMP): each axis corrects itself";
   format.convention =
       "the value is the error (actual minus nominal), mm or degrees, added to the actual position: a positive value "
       "moves the axis in the negative direction. Straight lines between points, the end values outside";

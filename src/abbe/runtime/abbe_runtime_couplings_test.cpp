@@ -162,7 +162,7 @@ TEST(RuntimeCouplings, WhatTheCallsCannotSolveIsRefused) {
   };
   // X 0, Y 1, Z 2, C 3, A 4.
   EXPECT_EQ(problem({{4, 3, 0.1}}), "");
-  EXPECT_THAT(problem({{4, 2, 1e-4}}), HasSubstr("A is coupled to Z, which takes the point"));
+  EXPECT_THAT(problem({{4, 2, 1e-4}}), HasSubstr("A is coupled to Z, which corrects the point"));
 }
 
 }  // namespace

@@ -199,10 +199,11 @@ std::string problem_of_couplings(const Machine& machine) {
     const bool turns = is_in(chosen.turning, coupling.axis), of_turns = is_in(chosen.turning, coupling.of);
     const std::string &axis = machine.axes[coupling.axis].name, &of = machine.axes[coupling.of].name;
     if (of_reaches && !reaches) {
-      return axis + " is coupled to " + of + ", which takes the point: a frozen compensation finds it last";
+      return axis + " is coupled to " + of +
+             ", which corrects the point and is computed last: a frozen compensation cannot use that";
     }
     if (!reaches && !turns && of_turns) {
-      return axis + " is coupled to " + of + ", which takes the orientation, but takes no correction itself";
+      return axis + " is coupled to " + of + ", which corrects the orientation, but is not corrected itself";
     }
     if (std::abs(coupling.ratio) > frozen::kLargestRatio) return "the ratio of " + axis + " to " + of + " is too large";
   }

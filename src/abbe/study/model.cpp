@@ -152,7 +152,7 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
     Basis& basis = motion.basis;
     if (positions.size() < 2) {
       model.impossible =
-          fmt::format("axis {} stands still in all readings: its error motions cannot be identified", axis.name);
+          fmt::format("axis {} does not move in any reading: its error motions cannot be identified", axis.name);
     } else if (basis.kind == BasisKind::fourier ? !covers_turn(positions, basis)
                                                 : basis.nodes.empty() && !basis.periodic) {
       const PositionRange measured = {positions.front(), positions.back()}, wanted = {basis.from, basis.to};

@@ -205,7 +205,8 @@ void NcMoves::turn_to_plane(const NcCodedBlock& block) {
       options_.planes->turn_tool(words_are_points() ? ProgramCoordinates::tool_centre : ProgramCoordinates::axes,
                                  {normal[0], normal[1], normal[2]}, in_radians(state_.offsets.sum()), words);
   if (!problem.empty()) {
-    block.fail(block.word(NcGroup::non_modal), problem, "another plane, or an approach from where it can");
+    block.fail(block.word(NcGroup::non_modal), problem,
+               "another plane, or a start position from which that is possible");
   }
   NcPlace to = position_.here();
   for_axes(position_.machine_words() & kRotaryWords, [&](std::size_t k) {

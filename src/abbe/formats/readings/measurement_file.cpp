@@ -178,7 +178,7 @@ class MeasurementReader {
         const double correlation = c[3 + k][row] / std::sqrt(c[kPairs[k][0]][row] * c[kPairs[k][1]][row]);
         if (std::abs(correlation) < 1) continue;
         fail_row(row, csv_.columns[first + 3 + k].header,
-                 fmt::format("means a correlation of {:.6g} beside {} and {}", correlation,
+                 fmt::format("implies a correlation of {:.6g} given {} and {}", correlation,
                              csv_.columns[first + kPairs[k][0]].header, csv_.columns[first + kPairs[k][1]].header),
                  "a positive definite covariance: correlations between -1 and 1");
       }

@@ -152,11 +152,10 @@ TEST(MeasurementFile, RefusesMissingAndContradictoryColumns) {
 
 TEST(MeasurementFile, RefusesCovariancesThatAreNoneAndReflectorsThatMove) {
   const std::string start = "X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm,";
-  EXPECT_EQ(
-      message_of_measurements(
-          start + "cov_xx_um2,cov_xy_um2,cov_xz_um2,cov_yy_um2,cov_yz_um2,cov_zz_um2\n1,2,3,4,5,6,1,2,0,1,0,1\n"),
-      "r.csv:2: cov_xy_um2: means a correlation of 2 beside cov_xx_um2 and cov_yy_um2; expected a positive definite "
-      "covariance: correlations between -1 and 1");
+  EXPECT_EQ(message_of_measurements(
+                start + "cov_xx_um2,cov_xy_um2,cov_xz_um2,cov_yy_um2,cov_yz_um2,cov_zz_um2\n1,2,3,4,5,6,1,2,0,1,0,1\n"),
+            "r.csv:2: cov_xy_um2: implies a correlation of 2 given cov_xx_um2 and cov_yy_um2; expected a positive "
+            "definite covariance: correlations between -1 and 1");
   EXPECT_EQ(message_of_measurements(
                 start + "cov_xx_um2,cov_xy_um2,cov_xz_um2,cov_yy_um2,cov_yz_um2,cov_zz_um2\n1,2,3,4,5,6,0,0,0,1,0,1\n"),
             "r.csv:2:13: cov_xx_um2: is 0; expected a squared length in um2 above zero");
@@ -199,7 +198,7 @@ TEST(MeasurementFile, RefusesCovariancesOfRangeAndAnglesThatAreNone) {
   const std::string start = kPolarCovariance;
   EXPECT_EQ(
       message_of_measurements(start + "# c\n1,2,3,1500,90,10,25,4,1,-5,2,0.5\n1,2,3,1500,90,10,25,4,1,-5,5.5,0.5\n"),
-      "r.csv:4: cov_range_elevation_um_arcsec: means a correlation of 1.1 beside cov_range_range_um2 and "
+      "r.csv:4: cov_range_elevation_um_arcsec: implies a correlation of 1.1 given cov_range_range_um2 and "
       "cov_elevation_elevation_arcsec2; expected a positive definite covariance: correlations between -1 and 1");
   EXPECT_EQ(message_of_measurements(start + "1,2,3,1500,90,10,25,4,1,9,4.5,-1.8\n"),
             "r.csv:2: cov_range_range_um2: the covariance of this reading is not positive definite; expected "

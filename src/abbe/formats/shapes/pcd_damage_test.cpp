@@ -61,7 +61,7 @@ TEST(DamagedPcd, LinesSayWhatIsWrong) {
   EXPECT_EQ(pcd_message(head + "1.5 2.5 3.5\n"),
             "a.pcd: POINTS: 2 are stated, but the file ends after 1; expected a line for each");
   EXPECT_EQ(pcd_message(head + "1 2 3\n1 2 3\n1 2 3\n"),
-            "a.pcd: POINTS: at byte 90: the file goes on after its 2 points; expected the end of the file");
+            "a.pcd: POINTS: at byte 90: the file continues after its 2 points; expected the end of the file");
   EXPECT_EQ(pcd_message(head + "1 2 3\n1 2\n3\n"),
             "a.pcd:9:1: the line has 2 values; expected 3, as FIELDS and COUNT say");
   EXPECT_EQ(pcd_message(head + "1 2 3 4\n1 2 3\n"),
@@ -101,7 +101,7 @@ TEST(DamagedPcd, BinaryFilesNameTheByte) {
             "a.pcd: y: point 1: 5e+09 is too large; expected a number of at most 1e+09");
   std::string more = pcd_for_test({{"x", 'F', 4, 1, {1}}, {"y", 'F', 4, 1, {2}}, {"z", 'F', 4, 1, {3}}}, 1, "binary");
   EXPECT_EQ(parse_point_cloud(more + std::string("\0\0\n", 3), "a.pcd").cloud.size(), 1);
-  EXPECT_THAT(pcd_message(more + "x"), HasSubstr("the file goes on after its 1 points"));
+  EXPECT_THAT(pcd_message(more + "x"), HasSubstr("the file continues after its 1 points"));
   std::string sizes = pcd_header_for_test(fields, 2, "binary_compressed");
   EXPECT_THAT(pcd_message(sizes + "\x05"),
               HasSubstr("DATA: at byte 176: the file ends; expected two sizes of 4 bytes"));

@@ -140,7 +140,7 @@ class PcdReader {
   void require_end(std::size_t end) const {
     const std::size_t more = contents_.find_first_not_of(std::string_view("\0\r\n \t", 5), end);
     if (more == std::string_view::npos) return;
-    refuse("POINTS", fmt::format("at byte {}: the file goes on after its {} points", more, header_.points),
+    refuse("POINTS", fmt::format("at byte {}: the file continues after its {} points", more, header_.points),
            "the end of the file");
   }
 

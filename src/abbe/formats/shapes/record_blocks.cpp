@@ -256,7 +256,7 @@ std::unique_ptr<const PointCloudBlocks::Reader> pcd_block_reader(std::string_vie
   const std::size_t more = contents.find_first_not_of(std::string_view("\0\r\n \t", 5), reader->end);
   if (more != std::string_view::npos) {
     throw InputError({.file = file, .field = "POINTS"},
-                     fmt::format("at byte {}: the file goes on after its {} points", more, header.points),
+                     fmt::format("at byte {}: the file continues after its {} points", more, header.points),
                      "the end of the file");
   }
   return reader;

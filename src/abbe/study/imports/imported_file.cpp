@@ -192,7 +192,7 @@ void drop_proved_doubts(const Machine& machine, const MeasurementTable& table, I
       proved = *least < *most;
     }
     if (!proved) continue;
-    column.reason += "; the file says no more, and the fit to the machine proves it";
+    column.reason += "; the file does not state it, but the fit to the machine proves it";
     column.doubts.clear();
   }
 }

@@ -108,7 +108,7 @@ class StreamJob {
     if (file_stamp(request_.scan_file) == stamp_) return;
     throw InputError({.file = request_.scan_file},
                      fmt::format("was changed while it was read, at byte {}, behind point {}", at, point),
-                     "a file that nobody changes meanwhile");
+                     "a file that does not change meanwhile");
   }
 
   void compare(std::size_t piece) {

@@ -252,11 +252,10 @@ nlohmann::json verification_page_data(const Verification& result) {
   nlohmann::json data;
   data["format"] = "abbe-report/1";
   data["title"] = "Compensation of the " + result.machine.name + ", verified";
-  data["subtitle"] =
-      std::string(
-          "A simulated machine, whose errors are therefore known, carries out the same commands without and "
-          "with the compensation: what is left at poses that nobody measured") +
-      (result.pieces.empty() ? "" : ", and on test pieces");
+  data["subtitle"] = std::string(
+                         "A simulated machine, whose errors are therefore known, carries out the same commands without "
+                         "and with the compensation: what is left at poses that were not measured") +
+                     (result.pieces.empty() ? "" : ", and on test pieces");
   data["evaluation"] = {{"kind", "verify"}, {"facts", facts(result, summary)}};
   data["summary"] = {{"verdict", verification_sentence(result)},
                      {"held_out", nlohmann::json(unseen_poses_json(poses))}};
