@@ -122,7 +122,7 @@ TimeSeries sensor_series(const PlacedTable& table, std::size_t time, std::size_t
                        "a temperature in \xC2\xB0\x43");
     }
     if (!series.time.empty() && at <= series.to()) {
-      throw InputError(table.place(row, times.header), fmt::format("{:.9g} s comes behind {:.9g} s", at, series.to()),
+      throw InputError(table.place(row, times.header), fmt::format("{:.9g} s follows {:.9g} s", at, series.to()),
                        "rows in chronological order; times must not restart at midnight");
     }
     series.time.push_back(at);

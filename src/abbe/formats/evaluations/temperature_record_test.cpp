@@ -23,7 +23,7 @@ TEST(TemperatureRecord, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(refused("time_s\n0\n"),
             "t.csv: machine_degC: missing column; expected machine_degC, instrument_degC or both");
   EXPECT_EQ(refused("time_s,machine_degC\n0,22\n"), "t.csv: machine_degC: 1 readings; expected two at least");
-  EXPECT_EQ(refused("time_s,machine_degC\n5,22\n4,23\n").substr(0, 38), "t.csv:3: time_s: 4 s comes behind 5 s;");
+  EXPECT_EQ(refused("time_s,machine_degC\n5,22\n4,23\n").substr(0, 33), "t.csv:3: time_s: 4 s follows 5 s;");
 }
 
 }  // namespace

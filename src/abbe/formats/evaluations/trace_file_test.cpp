@@ -40,7 +40,7 @@ TEST_F(Traces, StandInTheOrderOfTime) {
   const std::string header = "time_s,X_mm,Y_mm,Z_mm,A_deg,C_deg\n";
   EXPECT_THAT(read(header + "0.5,1,2,-3,0,0\n0.5,1,2,-3,0,0\n0.501,1,2,-3,0,0\n").time_s, ElementsAre(0.5, 0.5, 0.501));
   const std::string message = problem(header + "0.5,1,2,-3,0,0\n# pause\n0.499,1,2,-3,0,0\n");
-  EXPECT_THAT(message, HasSubstr("trace.csv:4: time_s: 0.499 s comes behind 0.5 s"));
+  EXPECT_THAT(message, HasSubstr("trace.csv:4: time_s: 0.499 s follows 0.5 s"));
   EXPECT_THAT(message, HasSubstr("rows in chronological order"));
 }
 

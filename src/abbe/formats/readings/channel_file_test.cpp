@@ -127,9 +127,9 @@ TEST(ChannelFile, AStateIsGivenInOnePlaceOnly) {
 
 TEST(ChannelFile, TimesIncrease) {
   EXPECT_EQ(message_of_channels("time_s,air_degC\n0,20\n# noon\n5,21\n5,22\n"),
-            "log.csv:5: time_s: 5 s stands twice; expected times that increase; they must not restart at midnight");
+            "log.csv:5: time_s: 5 s occurs twice; expected times that increase; they must not restart at midnight");
   EXPECT_THAT(message_of_channels("time_s,air_degC\n0,20\n5,21\n4,22\n"),
-              HasSubstr("log.csv:4: time_s: 4 s comes behind 5 s"));
+              HasSubstr("log.csv:4: time_s: 4 s follows 5 s"));
 }
 
 TEST(ChannelFile, WhatIsWrongWithItsColumnsIsSaid) {
