@@ -467,7 +467,7 @@ standard_uncertainty_um = 0.8
   const nlohmann::json encoder = with_play("siemens-eec", {"-o", "EEC.INI"});
   EXPECT_EQ(error_named(encoder, "reversal_X")["carried"], "not carried");
   EXPECT_THAT(error_named(encoder, "reversal_X")["control"].get<std::string>(),
-              HasSubstr("MD32450 $MA_BACKLASH of X1 takes it: 0.012000 mm more"));
+              HasSubstr("MD32450 $MA_BACKLASH of X1 compensates it: 0.012000 mm more"));
   EXPECT_GT(encoder["after"]["mean_um"].get<double>(), sag["after"]["mean_um"].get<double>() + 3);
   // One table for both directions is the mean.
   const CommandResult without = table("siemens-eec", {"-o", "MEAN.INI"});

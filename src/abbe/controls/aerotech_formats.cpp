@@ -164,7 +164,7 @@ TableFormat aerotech_format() {
   format.control = "Aerotech A3200, Automation1";
   format.takes = {negate, reference, names, axes, tolerance_mm, most_nodes};
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
-    return fmt::format("parameter BacklashDistance of axis {} takes it (sign not verified): {}", axis,
+    return fmt::format("parameter BacklashDistance of axis {} compensates it (sign not verified): {}", axis,
                        lost_motion_words(lost_motion, rotary));
   };
   format.axis_names = "number of the axis in calibration files, counted from 1";
@@ -172,7 +172,7 @@ TableFormat aerotech_format() {
   format.unverified =
       "the sign of the corrections (--negate): programs that others publish write nominal minus measured, as here, for "
       "axes with CountsPerUnit above zero; with CountsPerUnit below zero, distances, offsets and corrections change "
-      "their sign, which is not written";
+      "their sign; such files are not written";
   return format;
 }
 

@@ -48,8 +48,8 @@ std::vector<ControlNote> reversal_notes(const Machine& machine, const ErrorSet& 
       words =
           format.backlash(named ? table_axis(request.names, reversal.axis).name : axis.name, -reversal.value, rotary);
     } else {
-      words =
-          "backlash compensation of the control takes it, if it has one: " + lost_motion_words(-reversal.value, rotary);
+      words = "handled by the backlash compensation of the control, if it has one: " +
+              lost_motion_words(-reversal.value, rotary);
     }
     notes.push_back({reversal_name(machine, reversal.axis), std::move(words)});
   }

@@ -79,7 +79,7 @@ TableFormat fanuc_pitch_format() {
   format.takes = {negate, detection_unit, reference_position, reference, names,
                   axes,   tolerance_mm,   tolerance_rad,      most_nodes};
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
-    return fmt::format("parameter 1851 of axis {} takes it, in detection units (sign not verified): {}", axis,
+    return fmt::format("parameter 1851 of axis {} compensates it, in detection units (sign not verified): {}", axis,
                        lost_motion_words(lost_motion, rotary));
   };
   format.axis_names = "number of the controlled axis";

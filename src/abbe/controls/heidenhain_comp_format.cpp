@@ -200,8 +200,8 @@ TableFormat heidenhain_comp_format() {
       "itself";
   format.unverified =
       "the sign of COMPTAB and C1 to C6 (--negate) and that of the own columns (--negate-own); the sense of rows and "
-      "axes, which follows from one example; the form of a reference (A1C2: axis 1, column C2); head, end and columns "
-      "of the texts; degrees; that tables are looked up at the command; what holds outside their ends";
+      "axes, which follows from one example; the form of a reference (A1C2: axis 1, column C2); header, end and "
+      "columns of the texts; degrees; that tables are looked up at the command; what holds outside their ends";
   format.takes = {negate, negate_own, names, axes, tolerance_mm, tolerance_rad, most_nodes};
   format.axis_names = "number of the axis, counted from 1";
   format.default_name = [](std::size_t index, const Axis&) { return std::to_string(index + 1); };

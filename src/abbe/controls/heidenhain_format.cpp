@@ -56,13 +56,12 @@ TableFormat heidenhain_format() {
       "straight "
       "lines between points";
   format.unverified =
-      "head and end of the text (BEGIN, NR, [END]); the sign of the values (--negate); that the end values hold "
-      "outside; "
-      "BACKLASH is not written";
+      "header and end of the text (BEGIN, NR, [END]); the sign of the values (--negate); that the end values hold "
+      "outside; BACKLASH is not written";
   format.takes = {negate, reference, names, axes, tolerance_mm, tolerance_rad, most_nodes};
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
     return fmt::format(
-        "the backlash compensation of {} takes it (column BACKLASH or its parameter; sign not verified): {}", axis,
+        "handled by the backlash compensation of {} (column BACKLASH or its parameter; sign not verified): {}", axis,
         lost_motion_words(lost_motion, rotary));
   };
   format.axis_names = "axis key of CfgAxes/axisList";

@@ -150,10 +150,9 @@ KinematicFormat heidenhain_kinematic_values() {
       "COORD in mm and degrees, all axes at zero: starting at the tool reference point (gauge point), each Trans moves "
       "the frame; tilts of an axis come before MachAxis and are undone after it";
   format.unverified =
-      "the sense of rows and axes, which follows from one example of the manual; head, end and columns of the text; "
-      "that "
-      "angles are in degrees; how many decimals the control keeps; that its machine coordinates have their zero where "
-      "the machine file has it";
+      "the sense of rows and axes, which follows from one example of the manual; header, end and columns of the text; "
+      "that angles are in degrees; how many decimals the control keeps; that its machine coordinates have their zero "
+      "where the machine file has it";
   format.cannot =
       "positions and directions of rotary axes only; zero positions (MP960), error motions and linear axes are not in "
       "it";

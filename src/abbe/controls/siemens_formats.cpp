@@ -91,7 +91,7 @@ TableFormat siemens_eec_format() {
       "an axis is corrected by its own position only: errors across it are not corrected, and an angle times a lever "
       "is corrected only on the line through the reference pose";
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
-    return fmt::format("MD32450 $MA_BACKLASH of {} takes it: {}", axis, lost_motion_words(lost_motion, rotary));
+    return fmt::format("MD32450 $MA_BACKLASH of {} compensates it: {}", axis, lost_motion_words(lost_motion, rotary));
   };
   format.default_name = [](std::size_t /*index*/, const Axis& axis) {
     return axis.name.size() == 1 ? axis.name + "1" : axis.name;

@@ -80,7 +80,7 @@ TableFormat skew_format(bool klipper) {
       "the workpiece zero";
   if (!klipper) {
     format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
-      return fmt::format("M425 {}... F1 of a firmware with BACKLASH_COMPENSATION takes it: {}", axis,
+      return fmt::format("M425 {}... F1 of a firmware with BACKLASH_COMPENSATION compensates it: {}", axis,
                          lost_motion_words(lost_motion, rotary));
     };
   }

@@ -62,8 +62,7 @@ TEST(ThermalFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(refused_thermal("time_s,X_um\n0,1\n5,1\n5,2\n"),
             "t.csv:4: time_s: 5 s follows 5 s; expected rows in chronological order; times must not restart at "
             "midnight");
-  EXPECT_THAT(refused_thermal("time_h,X_um\n23.9,1\n0.1,2\n"),
-              StartsWith("t.csv:3: time_h: 360 s follows 86040 s"));
+  EXPECT_THAT(refused_thermal("time_h,X_um\n23.9,1\n0.1,2\n"), StartsWith("t.csv:3: time_h: 360 s follows 86040 s"));
   EXPECT_EQ(refused_thermal("time_s,X\n0,1\n"),
             "t.csv:1: X: the name of this column does not end in a unit of a length, an angle or a temperature; "
             "expected a name such as X1_um, A_urad or air_degC");

@@ -28,10 +28,10 @@ void require_increasing(const CsvValues& time, std::string_view text, const std:
   for (std::size_t row = 1; row < time.numbers.size(); ++row) {
     const double before = time.numbers[row - 1], at = time.numbers[row];
     if (at > before) continue;
-    throw InputError({file, csv_line(text, row), 0, time.header},
-                     at == before ? fmt::format("{:.9g} s occurs twice", at)
-                                  : fmt::format("{:.9g} s follows {:.9g} s", at, before),
-                     "times that increase; they must not restart at midnight");
+    throw InputError(
+        {file, csv_line(text, row), 0, time.header},
+        at == before ? fmt::format("{:.9g} s occurs twice", at) : fmt::format("{:.9g} s follows {:.9g} s", at, before),
+        "times that increase; they must not restart at midnight");
   }
 }
 
