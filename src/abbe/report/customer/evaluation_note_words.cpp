@@ -36,7 +36,7 @@ constexpr NoteWord kEvaluationNotes[] = {
     {"Readings within {}° of a reversal of an axis are not used for the causes.",
      {"Messwerte im Bereich von {0}° um die Umkehr einer Achse gehen nicht in die Ursachen ein.",
       "轴线换向点 {0}° 以内的读数不参与原因分析。", "軸の反転点から {0}° 以内の測定値は原因の分析に用いません。"}},
-    {"What the causes leave follows a pattern of its own: {} readings count as one in their uncertainties.",
+    {"The residuals of the causes follow a pattern of their own: {} readings count as one in the uncertainties.",
      {"Was die Ursachen nicht erklären, folgt einem eigenen Muster: In ihren Unsicherheiten zählen {0} Messwerte als "
       "einer.",
       "这些原因未能解释的部分自成图形：在其不确定度中 {0} 个读数按一个计。",
