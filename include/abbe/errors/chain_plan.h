@@ -6,6 +6,7 @@
 #include <span>
 
 #include "abbe/errors/error_set.h"
+#include "abbe/errors/factored_columns.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
@@ -95,6 +96,17 @@ class ChainPlan {
   void differentiate(PositionArrays positions, ConstPointArrays start, ConstPointArrays seen,
                      std::span<const RowArrays> rows, std::span<const std::size_t> parameters, double* jacobian,
                      std::size_t stride, const PointArrays* by_start = nullptr, double* by_position = nullptr) const;
+
+  /// The same with the factors of the columns in place of the columns.
+  ///
+  /// @param form          factored_columns() of the errors and `parameters`
+  /// @param carriers      out: carriers[carrier * stride + row * count + k]; stride >= rows * count
+  /// @param bases         out: bases[basis * basis_stride + k]; basis_stride >= count. Carriers and basis functions
+  ///                      of parameters without influence are 0.
+  void differentiate_factored(PositionArrays positions, ConstPointArrays seen, std::span<const RowArrays> rows,
+                              std::span<const std::size_t> parameters, const FactoredColumns& form, double* carriers,
+                              std::size_t stride, double* bases, std::size_t basis_stride,
+                              const PointArrays* by_start = nullptr, double* by_position = nullptr) const;
 
  private:
   struct Implementation;

@@ -162,6 +162,9 @@ struct DifferentiateCall {
   std::size_t stride = 0;
   const PointArrays* by_start = nullptr;
   double* by_position = nullptr;
+  const FactoredColumns* form = nullptr;  ///< then jacobian has the carriers
+  double* bases = nullptr;
+  std::size_t basis_stride = 0;
 };
 
 /// Poses first .. first + count - 1, count <= ChainPlan::kBlockSize.

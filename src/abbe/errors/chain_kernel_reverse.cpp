@@ -102,6 +102,26 @@ HWY_NOINLINE void take_back_error(const AxisStep& step, std::size_t rows, std::s
   }
 }
 
+/// Takes the motion of a step back where nobody asks for derivatives by its line and its command.
+HWY_NOINLINE void take_back_only_motion(const AxisStep& step, std::size_t rows, std::size_t end, Sweep& s) {
+  const Vector3 direction = set3(step.direction), centre = set3(step.centre);
+  const Vector sign = set(step.sign);
+  for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+    const Vector3 out = load(s.point, k);
+    if (!step.rotary) {
+      const Vector way = hn::Mul(hn::Add(load(s.lanes.position.v + k), set(step.zero_position)), sign);
+      store(out - Vector3{hn::Mul(way, direction.x), hn::Mul(way, direction.y), hn::Mul(way, direction.z)}, s.point, k);
+      continue;
+    }
+    const Matrix3 r = rotation(step, motion_angle(step, {load(s.lanes.sine.v + k), load(s.lanes.cosine.v + k)}));
+    store(transposed_times(r, out - centre) + centre, s.point, k);
+    for (std::size_t row = 0; row < rows; ++row) {
+      store(transposed_times(r, load(s.force[row], k)), s.force[row], k);
+      store(transposed_times(r, load(s.moment[row], k)), s.moment[row], k);
+    }
+  }
+}
+
 /// Takes the motion of a step back; channels: 0 .. 2 shifts and 3 .. 5 tilts of the axis line, 6 zero position.
 HWY_NOINLINE void take_back_motion(const AxisStep& step, std::size_t rows, std::size_t end, Sweep& s) {
   const Vector3 direction = set3(step.direction), centre = set3(step.centre);
@@ -154,6 +174,14 @@ struct Selection {
 struct Target {
   double* jacobian;
   std::size_t stride, count, first_row, rows;
+  const FactoredColumns* form;  ///< null: whole columns
+  double* bases;
+  std::size_t basis_stride;
+
+  /// Where the column of a parameter that has no basis function is written.
+  std::size_t place(std::size_t j) const { return form == nullptr ? j : form->columns[j].carrier; }
+  /// False if the function of a coefficient is that of an earlier column.
+  bool needs_function(std::size_t j) const { return form == nullptr || form->basis_first[form->columns[j].basis] == j; }
 };
 
 /// Writes channel times factor (null: 1) as the column of one parameter.
@@ -188,6 +216,18 @@ HWY_INLINE const Lane* with_state(std::size_t state, const Lane* lane, std::size
   return &states->product;
 }
 
+/// Writes the column of a coefficient, or those of its factors that no earlier column has.
+/// @param function  its basis function; not read if the target does not need it
+HWY_NOINLINE void write_coefficient(const Target& target, const Sweep& s, int component, const Lane* function,
+                                    std::size_t state, std::size_t end, StateSweep* states, std::size_t j) {
+  if (target.form == nullptr) return write_column(target, s, component, with_state(state, function, end, states), j);
+  const FactoredColumns::Column& column = target.form->columns[j];
+  if (target.form->carrier_first[column.carrier] == j) write_column(target, s, component, nullptr, column.carrier);
+  if (!target.needs_function(j)) return;
+  const Lane* values = with_state(state, function, end, states);
+  std::memcpy(target.bases + column.basis * target.basis_stride, values->v, target.count * sizeof(double));
+}
+
 /// Columns of all selected coefficients of one basis, a few functions at a time.
 HWY_NOINLINE void write_basis(const CompiledChain& chain, const AxisStep& step, const BasisUse& use,
                               const Selection& selection, const Target& target, std::size_t end, const Sweep& s,
@@ -203,8 +243,10 @@ HWY_NOINLINE void write_basis(const CompiledChain& chain, const AxisStep& step, 
       for (std::size_t j = selection.begin(term.first_parameter); j < selection.end(past); ++j) {
         const std::size_t parameter = selection.parameters[j];
         if (parameter < term.first_parameter || parameter >= past) continue;
-        local_function(local, static_cast<double>(parameter - term.first_parameter), end, factor);
-        write_column(target, s, term.component, with_state(use.state, &factor, end, states), j);
+        if (target.needs_function(j)) {
+          local_function(local, static_cast<double>(parameter - term.first_parameter), end, factor);
+        }
+        write_coefficient(target, s, term.component, &factor, use.state, end, states, j);
       }
     }
     return;
@@ -219,7 +261,7 @@ HWY_NOINLINE void write_basis(const CompiledChain& chain, const AxisStep& step, 
         const std::size_t parameter = selection.parameters[j];
         if (parameter < from || parameter >= past) continue;
         const Lane* function = &sequence.function[2 + parameter - from];
-        write_column(target, s, term.component, with_state(use.state, function, end, states), j);
+        write_coefficient(target, s, term.component, function, use.state, end, states, j);
       }
     }
     first += number;
@@ -241,16 +283,26 @@ HWY_NOINLINE void write_errors(const CompiledChain& chain, const AxisStep& step,
   }
 }
 
+bool locations_wanted(const AxisStep& step, const Selection& selection) {
+  return std::any_of(step.locations.begin(), step.locations.end(), [&](const AxisStep::Location& location) {
+    const std::size_t begin = selection.begin(location.parameter), end = selection.end(location.parameter + 1);
+    const std::span<const std::size_t> found = selection.parameters.subspan(begin, end - begin);
+    return std::find(found.begin(), found.end(), location.parameter) != found.end();
+  });
+}
+
+/// Columns of the location errors of a step.
 HWY_NOINLINE void write_motion(const AxisStep& step, const Selection& selection, const Target& target, std::size_t end,
-                               Sweep& s, StateSweep* states) {
+                               bool commands, Sweep& s, StateSweep* states) {
   for (const AxisStep::Location& location : step.locations) {
     for (std::size_t j = selection.begin(location.parameter); j < selection.end(location.parameter + 1); ++j) {
       if (selection.parameters[j] != location.parameter) continue;
       if (location.only < 0) combine(location, target.rows, end, s);
       write_column(target, s, location.only < 0 ? 7 : location.only, with_state(location.state, nullptr, end, states),
-                   j);
+                   target.place(j));
     }
   }
+  if (!commands) return;
   for (std::size_t row = 0; row < target.rows; ++row) {
     for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
       store(hn::Add(load(s.by_command[row].v + k), load(s.channel[row][6].v + k)), s.by_command[row].v + k);
@@ -269,7 +321,7 @@ HWY_NOINLINE void write_tool(const CompiledChain& chain, const Selection& select
   const std::size_t first = chain.tool_parameter;
   for (std::size_t j = selection.begin(first); j < selection.end(first + 3); ++j) {
     const std::size_t parameter = selection.parameters[j];
-    if (parameter >= first) write_column(target, s, static_cast<int>(parameter - first), nullptr, j);
+    if (parameter >= first) write_column(target, s, static_cast<int>(parameter - first), nullptr, target.place(j));
   }
 }
 
@@ -316,10 +368,12 @@ void differentiate_with(const CompiledChain& chain, const DifferentiateCall& cal
   Sweep s;
   read_rows(call, first_row, rows, s);
   const Selection selection{call.parameters, std::is_sorted(call.parameters.begin(), call.parameters.end())};
-  const Target target{call.jacobian, call.stride, count, first_row, rows};
+  const Target target{call.jacobian, call.stride, count, first_row, rows, call.form, call.bases, call.basis_stride};
   for (std::size_t j = 0; j < call.parameters.size(); ++j) {
     if (chain.influences[call.parameters[j]] != 0) continue;
-    std::fill_n(call.jacobian + j * call.stride + first_row * count, rows * count, 0.0);
+    std::fill_n(call.jacobian + target.place(j) * call.stride + first_row * count, rows * count, 0.0);
+    if (call.form == nullptr || call.form->columns[j].basis == FactoredColumns::kOne) continue;
+    std::fill_n(call.bases + call.form->columns[j].basis * call.basis_stride, count, 0.0);
   }
   if (call.by_position != nullptr) {
     for (std::size_t axis = 0; axis < call.positions.axis.size(); ++axis) {
@@ -333,7 +387,9 @@ void differentiate_with(const CompiledChain& chain, const DifferentiateCall& cal
     const AxisStep& step = chain.steps[i];
     const bool commands = call.by_position != nullptr;
     evaluate_axis(chain, step, call.positions.axis[step.axis], count, s.lanes, factor);
-    for (std::size_t row = 0; row < rows; ++row) std::memset(s.by_command[row].v, 0, sizeof s.by_command[row].v);
+    for (std::size_t row = 0; commands && row < rows; ++row) {
+      std::memset(s.by_command[row].v, 0, sizeof s.by_command[row].v);
+    }
     if (step.has_errors && !step.error_first) {
       take_back_error(step, rows, end, s);
       write_errors(chain, step, selection, target, end, commands, s, states);
@@ -342,10 +398,12 @@ void differentiate_with(const CompiledChain& chain, const DifferentiateCall& cal
       displace_lines(step, factor, end, states->line);
       take_back_moving_motion(step, rows, end, states->line, s);
       if (commands) add_factors_of_locations(chain, step, rows, end, s, *states);
-    } else {
+    } else if (commands || locations_wanted(step, selection)) {
       take_back_motion(step, rows, end, s);
+    } else {
+      take_back_only_motion(step, rows, end, s);
     }
-    write_motion(step, selection, target, end, s, states);
+    write_motion(step, selection, target, end, commands, s, states);
     if (step.has_errors && step.error_first) {
       take_back_error(step, rows, end, s);
       write_errors(chain, step, selection, target, end, commands, s, states);

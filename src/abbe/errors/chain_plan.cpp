@@ -156,6 +156,21 @@ struct ChainPlan::Implementation {
   std::vector<std::size_t> compiled_state;  ///< [states of the machine] index into CompiledChain::states or kNoState
   std::size_t parameter_count = 0;
 
+  void differentiate(chain::DifferentiateCall call) const {
+    const auto sweep = [&] {
+      for (std::size_t first = 0; first < call.rows.size(); first += chain::kRowsAtOnce) {
+        chain::differentiate_rows(chain, call, first, std::min(chain::kRowsAtOnce, call.rows.size() - first));
+      }
+    };
+    if (couplings.empty()) return sweep();
+    const chain::CoupledPositions block(couplings, call.positions, 0, call.positions.count);
+    call.positions = block.arrays();
+    sweep();
+    if (call.by_position != nullptr) {
+      chain::hand_to_commands(couplings, call.rows.size() * call.positions.count, call.by_position);
+    }
+  }
+
   void add_states(const Machine& machine, const std::vector<std::uint8_t>& used) {
     compiled_state.assign(machine.states.size(), kNoState);
     if (std::find(used.begin(), used.end(), std::uint8_t{1}) == used.end()) return;
@@ -306,18 +321,18 @@ void ChainPlan::differentiate(PositionArrays positions, ConstPointArrays /*start
                               double* by_position) const {
   assert(positions.count <= kBlockSize);
   assert(parameters.empty() || stride >= rows.size() * positions.count);
-  const std::vector<AxisCoupling>& couplings = implementation_->couplings;
-  chain::DifferentiateCall call{positions, seen, rows, parameters, jacobian, stride, by_start, by_position};
-  const auto sweep = [&] {
-    for (std::size_t first = 0; first < rows.size(); first += chain::kRowsAtOnce) {
-      chain::differentiate_rows(implementation_->chain, call, first, std::min(chain::kRowsAtOnce, rows.size() - first));
-    }
-  };
-  if (couplings.empty()) return sweep();
-  const chain::CoupledPositions block(couplings, positions, 0, positions.count);
-  call.positions = block.arrays();
-  sweep();
-  if (by_position != nullptr) chain::hand_to_commands(couplings, rows.size() * positions.count, by_position);
+  implementation_->differentiate({positions, seen, rows, parameters, jacobian, stride, by_start, by_position});
+}
+
+void ChainPlan::differentiate_factored(PositionArrays positions, ConstPointArrays seen, std::span<const RowArrays> rows,
+                                       std::span<const std::size_t> parameters, const FactoredColumns& form,
+                                       double* carriers, std::size_t stride, double* bases, std::size_t basis_stride,
+                                       const PointArrays* by_start, double* by_position) const {
+  assert(positions.count <= kBlockSize && basis_stride >= positions.count);
+  assert(form.columns.size() >= parameters.size());
+  assert(parameters.empty() || stride >= rows.size() * positions.count);
+  implementation_->differentiate(
+      {positions, seen, rows, parameters, carriers, stride, by_start, by_position, &form, bases, basis_stride});
 }
 
 }  // namespace abbe
