@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "abbe/errors/factored_columns.h"
+
 namespace abbe {
 
 struct ErrorSet;
@@ -26,6 +28,15 @@ struct ReadingComponent {
   bool is_angle = false;        ///< rad if true, mm if false
   bool is_pure_number = false;  ///< neither mm nor rad: an element of a quaternion
   bool is_relative = false;  ///< counts from a known number of the reading: 0 where it was measured, no column in files
+};
+
+/// Where Observations::evaluate_factored() writes the factors of a Jacobian.
+struct JacobianFactors {
+  const FactoredColumns& form;
+  double* carriers = nullptr;    ///< [form.carriers()] carriers[carrier * stride + row * count + k], per mm or rad
+  std::size_t stride = 0;        ///< >= rows() * count
+  double* bases = nullptr;       ///< [form.bases()] bases[basis * basis_stride + k], dimensionless or of a state
+  std::size_t basis_stride = 0;  ///< >= count
 };
 
 /// All readings of one set-up of one instrument, as weighted residuals of the machine's errors and the set-up's
@@ -73,6 +84,17 @@ class Observations {
   virtual void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                         std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                         std::size_t stride) const = 0;
+
+  /// How the columns of evaluate() are products of two factors each, at every point; none if they are not.
+  /// Those of set-up unknowns are the last carriers, in their order.
+  virtual std::optional<FactoredColumns> column_factors(std::span<const std::size_t> machine_parameters,
+                                                        std::span<const std::size_t> setup_parameters) const;
+
+  /// evaluate() with the factors of the Jacobian in place of the Jacobian. Thread-safe.
+  /// @param factors  form: what column_factors() gives for the same parameters, which must not be none
+  virtual void evaluate_factored(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
+                                 std::span<const std::size_t> setup_parameters, double* residuals,
+                                 const JacobianFactors& factors) const;
 
   /// Derivatives of the modelled values of readings first .. first + count - 1 by a displacement of what is seen (the
   /// reflector, the body that carries the item), in the frame of the body on which the instrument stands, at the

@@ -1,16 +1,13 @@
 #include "abbe/instruments/instrument_observations.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cassert>
-#include <optional>
-#include <stdexcept>
 
 #include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
-#include "abbe/instruments/reading_covariance.h"
+#include "abbe/instruments/jacobian_target.h"
+#include "abbe/instruments/reading_weights.h"
 
 namespace abbe {
 namespace {
@@ -44,11 +41,10 @@ struct InstrumentObservations::Implementation {
     ChainPlan plan;
   };
 
+  ErrorSet errors;
   std::shared_ptr<const Instrument> instrument;
   InstrumentReadings readings;
-  std::vector<std::vector<double>> weight;  ///< [rows][count] 1 / standard uncertainty; none with covariances
-  /// [rows (rows + 1) / 2][count] or empty: lower triangle, row by row, of W with W'W the inverse of the covariance.
-  std::vector<std::vector<double>> whitening;
+  ReadingWeights weights;
   std::vector<BodyPair> pairs;
   std::vector<std::size_t> pair_of;  ///< [items]
   std::vector<SetupUnknown> unknowns;
@@ -62,21 +58,6 @@ struct InstrumentObservations::Implementation {
   ReadingDrift drift;
 
   std::size_t rows() const { return instrument->components().size(); }
-  static std::size_t lower(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }
-  /// Row of W times the components of a reading, value(component).
-  template <typename Value>
-  double weighted(std::size_t row, std::size_t reading, const Value& value) const {
-    if (whitening.empty()) return weight[row][reading] * value(row);
-    double sum = 0;
-    for (std::size_t column = 0; column <= row; ++column) {
-      sum += whitening[lower(row, column)][reading] * value(column);
-    }
-    return sum;
-  }
-  void take_uncertainties();
-  void take_covariances();
-  /// From residuals of one reading to its deviations, mm or rad.
-  void unweight(std::size_t reading, double* components) const;
   std::size_t find_members(std::size_t first, std::size_t count, std::size_t pair, InstrumentScratch& s) const;
   void load(const BodyPair& pair, std::size_t first, std::size_t members, InstrumentScratch& s) const;
   void see(const BodyPair& pair, std::size_t first, std::size_t members, InstrumentScratch& s) const;
@@ -88,7 +69,12 @@ struct InstrumentObservations::Implementation {
                   InstrumentScratch& s) const;
   void evaluate_pair(const BodyPair& pair, std::size_t members, std::size_t first, std::size_t count,
                      std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters,
-                     double* residuals, double* jacobian, std::size_t stride) const;
+                     double* residuals, const JacobianTarget& out) const;
+  void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
+                std::span<const std::size_t> setup_parameters, double* residuals, const JacobianTarget& out) const;
+  void differentiate(const BodyPair& pair, std::size_t members, std::size_t first, std::size_t count,
+                     std::span<const std::size_t> machine_parameters, const JacobianTarget& out,
+                     InstrumentScratch& s) const;
   void model_item(std::size_t begin, std::size_t end, std::size_t first, std::size_t count,
                   std::span<const std::size_t> setup_parameters, std::size_t setup_column, double* residuals,
                   double* jacobian, std::size_t stride) const;
@@ -221,12 +207,12 @@ void InstrumentObservations::Implementation::model_item(std::size_t begin, std::
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t at = s.at[begin + k];
       const std::size_t reading = first + at;
-      residuals[row * count + at] =
-          weighted(row, reading, [&](std::size_t r) { return readings.measured[r][reading] - s.value[r * n + k]; });
+      residuals[row * count + at] = weights.weighted(
+          row, reading, [&](std::size_t r) { return readings.measured[r][reading] - s.value[r * n + k]; });
       if (jacobian == nullptr) continue;
       for (std::size_t j = 0; j < 6; ++j) {
         s.force[row][j][begin + k] =
-            weighted(row, reading, [&](std::size_t r) { return s.by_motion[(r * 6 + j) * n + k]; });
+            weights.weighted(row, reading, [&](std::size_t r) { return s.by_motion[(r * 6 + j) * n + k]; });
       }
     }
   }
@@ -239,10 +225,10 @@ void InstrumentObservations::Implementation::model_item(std::size_t begin, std::
       double* column = jacobian + (setup_column + i) * stride + row * count;
       for (std::size_t k = 0; k < n; ++k) {
         const std::size_t at = s.at[begin + k];
-        column[at] =
-            q < used.size()
-                ? weighted(row, first + at, [&](std::size_t r) { return s.by_quantity[(r * used.size() + q) * n + k]; })
-                : 0.0;
+        column[at] = q < used.size()
+                         ? weights.weighted(row, first + at,
+                                            [&](std::size_t r) { return s.by_quantity[(r * used.size() + q) * n + k]; })
+                         : 0.0;
       }
     }
   }
@@ -252,95 +238,64 @@ void InstrumentObservations::Implementation::evaluate_pair(const BodyPair& pair,
                                                            std::size_t count,
                                                            std::span<const std::size_t> machine_parameters,
                                                            std::span<const std::size_t> setup_parameters,
-                                                           double* residuals, double* jacobian,
-                                                           std::size_t stride) const {
+                                                           double* residuals, const JacobianTarget& out) const {
   InstrumentScratch& s = instrument_scratch();
+  const std::size_t setup_column =
+      out.written(machine_parameters.size() + setup_parameters.size()) - setup_parameters.size();
   load(pair, first, members, s);
   see(pair, first, members, s);
   for (std::size_t begin = 0; begin < members;) {
     std::size_t end = begin + 1;
     while (end < members && readings.item[first + s.at[end]] == readings.item[first + s.at[begin]]) ++end;
-    model_item(begin, end, first, count, setup_parameters, machine_parameters.size(), residuals, jacobian, stride);
+    model_item(begin, end, first, count, setup_parameters, setup_column, residuals, out.columns, out.stride);
     begin = end;
   }
-  if (jacobian == nullptr) return;
+  if (!out.wanted()) return;
   if (drift.acts()) {
-    take_drift(first, members, count, setup_parameters, jacobian + machine_parameters.size() * stride, stride, s);
+    take_drift(first, members, count, setup_parameters, out.columns + setup_column * out.stride, out.stride, s);
   }
-  if (machine_parameters.empty()) return;
+  if (!machine_parameters.empty()) differentiate(pair, members, first, count, machine_parameters, out, s);
+}
 
+void InstrumentObservations::Implementation::differentiate(const BodyPair& pair, std::size_t members, std::size_t first,
+                                                           std::size_t count,
+                                                           std::span<const std::size_t> machine_parameters,
+                                                           const JacobianTarget& out, InstrumentScratch& s) const {
   RowArrays row_arrays[kMaxRows];
   for (std::size_t row = 0; row < rows(); ++row) {
     row_arrays[row].force = {s.force[row][0], s.force[row][1], s.force[row][2]};
     row_arrays[row].moment = {s.force[row][3], s.force[row][4], s.force[row][5]};
   }
-  const std::size_t compact_stride = rows() * members;
-  s.jacobian.resize(machine_parameters.size() * compact_stride);
+  // Columns of the machine stand first, whole or as carriers.
+  std::size_t columns = 0;
+  for (std::size_t j = 0; j < machine_parameters.size(); ++j) columns = std::max(columns, out.place(j) + 1);
+  JacobianTarget compact = out;
+  compact.stride = rows() * members;
+  compact.basis_stride = members;
+  s.jacobian.resize(columns * compact.stride + out.bases_written() * members);
+  compact.columns = s.jacobian.data();
+  compact.bases = compact.columns + columns * compact.stride;
   double* by_position = nullptr;
   if (reversal.acts_on(readings.poses)) {
-    s.by_position.resize(s.axis.size() * compact_stride);
+    s.by_position.resize(s.axis.size() * compact.stride);
     by_position = s.by_position.data();
   }
-  pair.plan.differentiate({s.axis, members, s.state}, {s.start[0], s.start[1], s.start[2]},
-                          {s.seen[0], s.seen[1], s.seen[2]}, {row_arrays, rows()}, machine_parameters,
-                          s.jacobian.data(), compact_stride, nullptr, by_position);
-  for (std::size_t column = 0; by_position != nullptr && column < machine_parameters.size(); ++column) {
-    const std::size_t axis = reversal.axis_of(machine_parameters[column]);
-    if (axis == ReversalShift::npos) continue;
-    for (std::size_t row = 0; row < rows(); ++row) {
-      for (std::size_t k = 0; k < members; ++k) {
-        const double half_approach = 0.5 * readings.poses.approach[axis][first + s.at[k]];
-        s.jacobian[column * compact_stride + row * members + k] =
-            half_approach * by_position[(axis * rows() + row) * members + k];
-      }
-    }
-  }
-  for (std::size_t column = 0; column < machine_parameters.size(); ++column) {
-    for (std::size_t row = 0; row < rows(); ++row) {
-      const double* compact = &s.jacobian[column * compact_stride + row * members];
-      double* wide = jacobian + column * stride + row * count;
-      for (std::size_t k = 0; k < members; ++k) wide[s.at[k]] = compact[k];
-    }
-  }
+  const BlockMembers block{first, count, {s.at, members}};
+  differentiate_readings(pair.plan, {s.axis, members, s.state}, {s.start[0], s.start[1], s.start[2]},
+                         {s.seen[0], s.seen[1], s.seen[2]}, {row_arrays, rows()}, machine_parameters, compact, nullptr,
+                         by_position, reversal, readings.poses, block);
+  spread_derivatives(compact, columns, rows(), block, out);
 }
 
-void InstrumentObservations::Implementation::take_uncertainties() {
-  weight.assign(rows(), std::vector<double>(readings.count()));
-  for (std::size_t row = 0; row < rows(); ++row) {
-    for (std::size_t k = 0; k < readings.count(); ++k) {
-      const double u = readings.uncertainty.empty() ? instrument->standard_uncertainty(readings, k, row)
-                                                    : readings.uncertainty[row][k];
-      if (!(u > 0)) throw std::invalid_argument(instrument->name() + ": standard uncertainty not above 0");
-      weight[row][k] = 1 / u;
-    }
-  }
-}
-
-void InstrumentObservations::Implementation::take_covariances() {
-  whitening.assign(rows() * (rows() + 1) / 2, std::vector<double>(readings.count()));
-  for (std::size_t k = 0; k < readings.count(); ++k) {
-    const std::optional<Eigen::MatrixXd> factor = inverse_covariance_factor(covariance_of(readings, rows(), k));
-    if (!factor) {
-      throw std::invalid_argument(fmt::format("reading {}: its covariance is not positive definite", k));
-    }
-    for (std::size_t row = 0; row < rows(); ++row) {
-      for (std::size_t column = 0; column <= row; ++column) {
-        whitening[lower(row, column)][k] = (*factor)(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
-      }
-    }
-  }
-}
-
-void InstrumentObservations::Implementation::unweight(std::size_t reading, double* components) const {
-  for (std::size_t row = 0; row < rows(); ++row) {
-    if (whitening.empty()) {
-      components[row] /= weight[row][reading];
-      continue;
-    }
-    for (std::size_t column = 0; column < row; ++column) {
-      components[row] -= whitening[lower(row, column)][reading] * components[column];
-    }
-    components[row] /= whitening[lower(row, row)][reading];
+void InstrumentObservations::Implementation::evaluate(std::size_t first, std::size_t count,
+                                                      std::span<const std::size_t> machine_parameters,
+                                                      std::span<const std::size_t> setup_parameters, double* residuals,
+                                                      const JacobianTarget& out) const {
+  assert(count <= kBlockSize && first + count <= readings.count());
+  for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
+    const std::size_t members = find_members(first, count, pair, instrument_scratch());
+    if (members == 0) continue;
+    evaluate_pair(pairs[pair], members, first, count, machine_parameters, setup_parameters, residuals, out);
   }
 }
 
@@ -350,6 +305,7 @@ InstrumentObservations::InstrumentObservations(const Machine& machine, const Err
     : implementation_(std::make_unique<Implementation>()) {
   check_readings(machine, *instrument, readings);
   Implementation& own = *implementation_;
+  own.errors = errors;
   own.instrument = std::move(instrument);
   own.readings = std::move(readings);
   assert(own.rows() >= 1 && own.rows() <= kMaxRows);
@@ -358,11 +314,7 @@ InstrumentObservations::InstrumentObservations(const Machine& machine, const Err
   own.reversal = ReversalShift(errors);
   own.given_states = GivenStates(machine, errors);
   require_states(machine, errors, own.readings.poses);
-  if (own.readings.covariance.empty()) {
-    own.take_uncertainties();
-  } else {
-    own.take_covariances();
-  }
+  own.weights = ReadingWeights(*own.instrument, own.readings);
   // Only pairs of bodies that occur get a plan.
   std::vector<std::uint8_t> occurs(own.instrument->items().size(), 0);
   for (const std::uint16_t item : own.readings.item) occurs[item] = 1;
@@ -434,14 +386,20 @@ void InstrumentObservations::evaluate(std::size_t first, std::size_t count,
                                       std::span<const std::size_t> machine_parameters,
                                       std::span<const std::size_t> setup_parameters, double* residuals,
                                       double* jacobian, std::size_t stride) const {
-  const Implementation& own = *implementation_;
-  assert(count <= kBlockSize && first + count <= own.readings.count());
-  for (std::size_t pair = 0; pair < own.pairs.size(); ++pair) {
-    const std::size_t members = own.find_members(first, count, pair, instrument_scratch());
-    if (members == 0) continue;
-    own.evaluate_pair(own.pairs[pair], members, first, count, machine_parameters, setup_parameters, residuals, jacobian,
-                      stride);
-  }
+  implementation_->evaluate(first, count, machine_parameters, setup_parameters, residuals,
+                            JacobianTarget::of(jacobian, stride));
+}
+
+std::optional<FactoredColumns> InstrumentObservations::column_factors(
+    std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters) const {
+  return factors_with_setup(implementation_->errors, machine_parameters, setup_parameters);
+}
+
+void InstrumentObservations::evaluate_factored(std::size_t first, std::size_t count,
+                                               std::span<const std::size_t> machine_parameters,
+                                               std::span<const std::size_t> setup_parameters, double* residuals,
+                                               const JacobianFactors& factors) const {
+  implementation_->evaluate(first, count, machine_parameters, setup_parameters, residuals, JacobianTarget::of(factors));
 }
 
 bool InstrumentObservations::displacement_rows(std::size_t first, std::size_t count, double* rows_out) const {
@@ -476,7 +434,7 @@ bool InstrumentObservations::displacement_rows(std::size_t first, std::size_t co
 std::vector<double> InstrumentObservations::deviation(std::size_t reading) const {
   std::vector<double> result(implementation_->rows());
   evaluate(reading, 1, {}, {}, result.data(), nullptr, 0);
-  implementation_->unweight(reading, result.data());
+  implementation_->weights.unweight(reading, result.data());
   return result;
 }
 
@@ -490,7 +448,7 @@ std::vector<std::vector<double>> InstrumentObservations::modelled() const {
     for (std::size_t k = 0; k < n; ++k) {
       double deviations[kMaxRows];
       for (std::size_t row = 0; row < own.rows(); ++row) deviations[row] = residuals[row * n + k];
-      own.unweight(first + k, deviations);
+      own.weights.unweight(first + k, deviations);
       for (std::size_t row = 0; row < own.rows(); ++row) result[row][first + k] -= deviations[row];
     }
   }

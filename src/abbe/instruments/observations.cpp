@@ -2,12 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "abbe/instruments/further_readings.h"
 
 namespace abbe {
 
 std::vector<FurtherReadings> Observations::further_readings(const Machine&, const ErrorSet&) const { return {}; }
+
+std::optional<FactoredColumns> Observations::column_factors(std::span<const std::size_t>,
+                                                            std::span<const std::size_t>) const {
+  return std::nullopt;
+}
+
+void Observations::evaluate_factored(std::size_t, std::size_t, std::span<const std::size_t>,
+                                     std::span<const std::size_t>, double*, const JacobianFactors&) const {
+  throw std::logic_error(name() + ": the Jacobian has no factors");
+}
 
 std::optional<double> Observations::length_of_deviation(std::size_t reading) const {
   const std::vector<double> apart = deviation(reading);

@@ -33,6 +33,11 @@ class StreamedObservations : public Observations {
   void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                 std::size_t stride) const override;
+  std::optional<FactoredColumns> column_factors(std::span<const std::size_t> machine_parameters,
+                                                std::span<const std::size_t> setup_parameters) const override;
+  void evaluate_factored(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
+                         std::span<const std::size_t> setup_parameters, double* residuals,
+                         const JacobianFactors& factors) const override;
 
  private:
   struct Implementation;

@@ -39,6 +39,11 @@ class TrackerObservations : public Observations {
   void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                 std::size_t stride) const override;
+  std::optional<FactoredColumns> column_factors(std::span<const std::size_t> machine_parameters,
+                                                std::span<const std::size_t> setup_parameters) const override;
+  void evaluate_factored(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
+                         std::span<const std::size_t> setup_parameters, double* residuals,
+                         const JacobianFactors& factors) const override;
   bool displacement_rows(std::size_t first, std::size_t count, double* rows_out) const override;
   std::vector<FurtherReadings> further_readings(const Machine& machine, const ErrorSet& errors) const override;
   std::optional<double> length_of_deviation(std::size_t reading) const override;

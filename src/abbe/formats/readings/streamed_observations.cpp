@@ -119,4 +119,35 @@ void StreamedObservations::evaluate(std::size_t first, std::size_t count,
   }
 }
 
+std::optional<FactoredColumns> StreamedObservations::column_factors(
+    std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters) const {
+  return implementation_->pattern->column_factors(machine_parameters, setup_parameters);
+}
+
+void StreamedObservations::evaluate_factored(std::size_t first, std::size_t count,
+                                             std::span<const std::size_t> machine_parameters,
+                                             std::span<const std::size_t> setup_parameters, double* residuals,
+                                             const JacobianFactors& factors) const {
+  const std::size_t begin = first % kStreamedTogether;
+  if (begin + count <= kStreamedTogether) {
+    implementation_->part(first / kStreamedTogether)
+        ->evaluate_factored(begin, count, machine_parameters, setup_parameters, residuals, factors);
+    return;
+  }
+  // As in evaluate().
+  const std::size_t own_rows = static_cast<std::size_t>(rows());
+  std::vector<double> residual(own_rows), carriers(own_rows * factors.form.carriers()), bases(factors.form.bases());
+  for (std::size_t k = 0; k < count; ++k) {
+    evaluate_factored(first + k, 1, machine_parameters, setup_parameters, residual.data(),
+                      {factors.form, carriers.data(), own_rows, bases.data(), 1});
+    for (std::size_t row = 0; row < own_rows; ++row) {
+      residuals[row * count + k] = residual[row];
+      for (std::size_t c = 0; c < factors.form.carriers(); ++c) {
+        factors.carriers[c * factors.stride + row * count + k] = carriers[c * own_rows + row];
+      }
+    }
+    for (std::size_t b = 0; b < bases.size(); ++b) factors.bases[b * factors.basis_stride + k] = bases[b];
+  }
+}
+
 }  // namespace abbe

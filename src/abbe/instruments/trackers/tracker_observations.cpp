@@ -8,6 +8,7 @@
 #include "abbe/errors/error_states.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/instruments/jacobian_target.h"
 #include "abbe/instruments/trackers/tracker_drift.h"
 #include "abbe/instruments/trackers/tracker_residual.h"
 #include "abbe/instruments/trackers/tracker_scratch.h"
@@ -121,11 +122,11 @@ struct TrackerObservations::Implementation {
   void find_members(std::size_t first, std::size_t count, std::size_t pair, Members& members) const;
   void evaluate_pair(const BodyPair& pair, const Members& members, std::size_t first, std::size_t count,
                      std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters,
-                     double* residuals, double* jacobian, std::size_t stride) const;
+                     double* residuals, const JacobianTarget& out) const;
+  void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
+                std::span<const std::size_t> setup_parameters, double* residuals, const JacobianTarget& out) const;
   void load(const Members& members, std::size_t first, TrackerScratch& s) const;
   void residuals_of_runs(const Members& members, bool with_forces, TrackerScratch& s) const;
-  void reversal_columns(const Members& members, std::size_t first, std::span<const std::size_t> machine_parameters,
-                        const TrackerScratch& s, double* target, std::size_t stride) const;
   void setup_column(const UnknownRole& role, std::size_t count, const TrackerScratch& s, double* column) const;
 };
 
@@ -166,6 +167,10 @@ void TrackerObservations::Implementation::load(const Members& members, std::size
   }
   const auto gather = [&](const std::vector<double>& from, double* to) {
     if (from.empty()) return;
+    if (members.whole_block) {
+      std::copy_n(&from[first], members.count, to);
+      return;
+    }
     for (std::size_t k = 0; k < members.count; ++k) to[k] = from[first + members.at[k]];
   };
   for (std::size_t c = 0; c < 3; ++c) gather(readings.measured[c], s.gathered[c]);
@@ -199,46 +204,31 @@ void TrackerObservations::Implementation::residuals_of_runs(const Members& membe
 
 void TrackerObservations::Implementation::setup_column(const UnknownRole& role, std::size_t count,
                                                        const TrackerScratch& s, double* column) const {
+  const std::uint16_t* of = role.kind == UnknownKind::reflector_offset ? s.reflector : s.station;
   for (int row = 0; row < 3; ++row) {
     double* values_out = column + static_cast<std::size_t>(row) * count;
     if (role.kind == UnknownKind::reflector_offset) {
-      for (std::size_t k = 0; k < count; ++k) {
-        values_out[k] = s.reflector[k] == role.index ? s.by_start[row][role.component][k] : 0.0;
-      }
+      std::copy_n(s.by_start[row][role.component], count, values_out);
     } else if (role.kind == UnknownKind::station_position) {
-      for (std::size_t k = 0; k < count; ++k) {
-        values_out[k] = s.station[k] == role.index ? -s.force[row][role.component][k] : 0.0;
-      }
+      for (std::size_t k = 0; k < count; ++k) values_out[k] = -s.force[row][role.component][k];
     } else {
+      // Turned about the axis: force . (seen - origin) x axis = (seen - origin) . axis x force
       const StationPose& station = stations[role.index];
-      const Eigen::Vector3d axis = station.turn_axes.col(role.component);
+      const double a0 = station.turn_axes(0, role.component), a1 = station.turn_axes(1, role.component);
+      const double a2 = station.turn_axes(2, role.component);
+      const double o0 = station.origin[0], o1 = station.origin[1], o2 = station.origin[2];
+      const double *f0 = s.force[row][0], *f1 = s.force[row][1], *f2 = s.force[row][2];
       for (std::size_t k = 0; k < count; ++k) {
-        const double d0 = s.seen[0][k] - station.origin[0];
-        const double d1 = s.seen[1][k] - station.origin[1];
-        const double d2 = s.seen[2][k] - station.origin[2];
-        const double f0 = s.force[row][0][k], f1 = s.force[row][1][k], f2 = s.force[row][2][k];
-        const double turned =
-            axis[0] * (f1 * d2 - f2 * d1) + axis[1] * (f2 * d0 - f0 * d2) + axis[2] * (f0 * d1 - f1 * d0);
-        values_out[k] = s.station[k] == role.index ? turned : 0.0;
+        values_out[k] = (s.seen[0][k] - o0) * (a1 * f2[k] - a2 * f1[k]) +
+                        (s.seen[1][k] - o1) * (a2 * f0[k] - a0 * f2[k]) +
+                        (s.seen[2][k] - o2) * (a0 * f1[k] - a1 * f0[k]);
       }
     }
   }
-}
-
-void TrackerObservations::Implementation::reversal_columns(const Members& members, std::size_t first,
-                                                           std::span<const std::size_t> machine_parameters,
-                                                           const TrackerScratch& s, double* target,
-                                                           std::size_t stride) const {
-  const std::size_t n = members.count;
-  for (std::size_t column = 0; column < machine_parameters.size(); ++column) {
-    const std::size_t axis = reversal.axis_of(machine_parameters[column]);
-    if (axis == ReversalShift::npos) continue;
-    for (std::size_t row = 0; row < 3; ++row) {
-      for (std::size_t k = 0; k < n; ++k) {
-        const double half_approach = 0.5 * readings.poses.approach[axis][first + members.at[k]];
-        target[column * stride + row * n + k] = half_approach * s.by_position[(axis * 3 + row) * n + k];
-      }
-    }
+  // Alone and not in the loops above, which are then done with vectors.
+  for (std::size_t k = 0; k < count; ++k) {
+    if (of[k] == role.index) continue;
+    for (std::size_t row = 0; row < 3; ++row) column[row * count + k] = 0;
   }
 }
 
@@ -246,7 +236,7 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
                                                         std::size_t count,
                                                         std::span<const std::size_t> machine_parameters,
                                                         std::span<const std::size_t> setup_parameters,
-                                                        double* residuals, double* jacobian, std::size_t stride) const {
+                                                        double* residuals, const JacobianTarget& out) const {
   TrackerScratch& s = tracker_scratch();
   load(members, first, s);
   const std::size_t n = members.count;
@@ -256,32 +246,34 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
   const ConstPointArrays seen{of_plan[0], of_plan[1], of_plan[2]};
   pair.plan.transform(positions, start, {s.seen[0], s.seen[1], s.seen[2]});
   if (drift.acts()) move_reflectors(drift, first, {members.at, n}, s.seen, s.unmoved);
-  residuals_of_runs(members, jacobian != nullptr, s);
+  residuals_of_runs(members, out.wanted(), s);
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t k = 0; k < n; ++k) residuals[row * count + members.at[k]] = s.residual[row][k];
   }
-  if (jacobian == nullptr) return;
+  if (!out.wanted()) return;
 
-  const std::size_t columns = machine_parameters.size() + setup_parameters.size();
-  double* target = jacobian;
-  std::size_t target_stride = stride;
+  const std::size_t columns = out.written(machine_parameters.size() + setup_parameters.size());
+  const BlockMembers block{first, count, {members.at, n}};
+  JacobianTarget target = out;
   if (!members.whole_block) {
-    target_stride = 3 * kBlockSize;
-    if (s.jacobian.size() < columns * target_stride) s.jacobian.resize(columns * target_stride);
-    target = s.jacobian.data();
+    target.stride = 3 * kBlockSize;
+    target.basis_stride = kBlockSize;
+    s.jacobian.resize(columns * target.stride + out.bases_written() * target.basis_stride);
+    target.columns = s.jacobian.data();
+    target.bases = target.columns + columns * target.stride;
   }
   const auto is_of_reflector = [&](std::size_t i) {
     return i < roles.size() && roles[i].kind == UnknownKind::reflector_offset;
   };
-  double* const setup_target = target + machine_parameters.size() * target_stride;
+  double* const setup_target = target.columns + (columns - setup_parameters.size()) * target.stride;
   // Of a station the columns are in its own frame, those of everything else in the frame of the body.
   for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
     if (setup_parameters[i] >= roles.size() || is_of_reflector(setup_parameters[i])) continue;
-    setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target_stride);
+    setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target.stride);
   }
   if (drift.acts()) {
     take_tracker_drift(drift, first, {members.at, n}, s.seen,
-                       {setup_parameters, roles.size(), setup_target, target_stride}, s.force);
+                       {setup_parameters, roles.size(), setup_target, target.stride}, s.force);
   }
   const bool by_start_wanted = std::any_of(setup_parameters.begin(), setup_parameters.end(), is_of_reflector);
   RowArrays rows[3];
@@ -296,27 +288,33 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
       s.by_position.resize(readings.poses.axis.size() * 3 * n);
       by_position = s.by_position.data();
     }
-    pair.plan.differentiate(positions, start, seen, rows, machine_parameters, target, target_stride,
-                            by_start_wanted ? by_start : nullptr, by_position);
-    if (by_position != nullptr) reversal_columns(members, first, machine_parameters, s, target, target_stride);
+    differentiate_readings(pair.plan, positions, start, seen, rows, machine_parameters, target,
+                           by_start_wanted ? by_start : nullptr, by_position, reversal, readings.poses, block);
   }
   if (pair.from != Body::tool) {
     // The tool offset error belongs to targets on the tool; a station standing there has its own pose.
     for (std::size_t column = 0; column < machine_parameters.size(); ++column) {
-      if (machine_parameters[column] >= tool_parameter) std::fill_n(target + column * target_stride, 3 * n, 0.0);
+      if (machine_parameters[column] >= tool_parameter) std::fill_n(target.column(column), 3 * n, 0.0);
     }
   }
   for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
     if (!is_of_reflector(setup_parameters[i])) continue;
-    setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target_stride);
+    setup_column(roles[setup_parameters[i]], n, s, setup_target + i * target.stride);
   }
-  if (members.whole_block) return;
-  for (std::size_t column = 0; column < columns; ++column) {
-    for (std::size_t row = 0; row < 3; ++row) {
-      const double* compact = target + column * target_stride + row * n;
-      double* wide = jacobian + column * stride + row * count;
-      for (std::size_t k = 0; k < n; ++k) wide[members.at[k]] = compact[k];
-    }
+  if (!members.whole_block) spread_derivatives(target, columns, 3, block, out);
+}
+
+void TrackerObservations::Implementation::evaluate(std::size_t first, std::size_t count,
+                                                   std::span<const std::size_t> machine_parameters,
+                                                   std::span<const std::size_t> setup_parameters, double* residuals,
+                                                   const JacobianTarget& out) const {
+  assert(count <= kBlockSize && first + count <= readings.count());
+  Members members;
+  for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
+    find_members(first, count, pair, members);
+    if (members.count == 0) continue;
+    evaluate_pair(pairs[pair], members, first, count, machine_parameters, setup_parameters, residuals, out);
+    if (members.whole_block) break;
   }
 }
 
@@ -420,16 +418,20 @@ void TrackerObservations::evaluate(std::size_t first, std::size_t count,
                                    std::span<const std::size_t> machine_parameters,
                                    std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                                    std::size_t stride) const {
-  const Implementation& own = *implementation_;
-  assert(count <= kBlockSize && first + count <= own.readings.count());
-  Members members;
-  for (std::size_t pair = 0; pair < own.pairs.size(); ++pair) {
-    own.find_members(first, count, pair, members);
-    if (members.count == 0) continue;
-    own.evaluate_pair(own.pairs[pair], members, first, count, machine_parameters, setup_parameters, residuals, jacobian,
-                      stride);
-    if (members.whole_block) break;
-  }
+  implementation_->evaluate(first, count, machine_parameters, setup_parameters, residuals,
+                            JacobianTarget::of(jacobian, stride));
+}
+
+std::optional<FactoredColumns> TrackerObservations::column_factors(
+    std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters) const {
+  return factors_with_setup(implementation_->errors, machine_parameters, setup_parameters);
+}
+
+void TrackerObservations::evaluate_factored(std::size_t first, std::size_t count,
+                                            std::span<const std::size_t> machine_parameters,
+                                            std::span<const std::size_t> setup_parameters, double* residuals,
+                                            const JacobianFactors& factors) const {
+  implementation_->evaluate(first, count, machine_parameters, setup_parameters, residuals, JacobianTarget::of(factors));
 }
 
 bool TrackerObservations::displacement_rows(std::size_t first, std::size_t count, double* rows_out) const {
