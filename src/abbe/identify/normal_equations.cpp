@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/stopped.h"
+#include "abbe/identify/sums/factored_sums.h"
 #include "abbe/identify/sums/pose_sums.h"
 #include "abbe/identify/sums/reading_fingerprints.h"
 #include "abbe/identify/sums/sum_check.h"
@@ -21,6 +23,50 @@ using Index = Eigen::Index;
 struct Buffer {
   std::vector<double> values;
   double* aligned = nullptr;
+};
+
+/// Weights of the readings of a block, and what it costs.
+struct BlockWeights {
+  double root[Observations::kBlockSize];  ///< of the weight; 0: left out
+  double cost = 0;
+  bool weighted = false;  ///< a root is not 1
+
+  /// @param use  null: all
+  BlockWeights(const double* residuals, std::size_t rows, std::size_t count, const std::uint8_t* use,
+               const Loss& loss) {
+    for (std::size_t k = 0; k < count; ++k) {
+      double square = 0;
+      for (std::size_t r = 0; r < rows; ++r) square += residuals[r * count + k] * residuals[r * count + k];
+      root[k] = 1;
+      if (use && !use[k]) {
+        root[k] = 0;
+        weighted = true;
+      } else if (loss.kind == LossKind::none) {
+        cost += square / 2;
+      } else {
+        const double norm = std::sqrt(square);
+        root[k] = std::sqrt(loss.weight(norm, static_cast<int>(rows)));
+        cost += loss.cost(norm, static_cast<int>(rows));
+        weighted = true;
+      }
+    }
+  }
+
+  void weigh(double* column, std::size_t rows, std::size_t count) const {
+    if (!weighted) return;
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t k = 0; k < count; ++k) {
+        double& value = column[r * count + k];
+        // Set, not multiplied: what is left out may be no number at all.
+        value = root[k] > 0 ? value * root[k] : (root[k] == 0 ? 0.0 : root[k]);
+      }
+  }
+  /// Sets what is left out to zero.
+  void leave_out(double* values, std::size_t count) const {
+    if (!weighted) return;
+    for (std::size_t k = 0; k < count; ++k)
+      if (root[k] == 0) values[k] = 0;
+  }
 };
 
 /// Takes more rows into a factor, which has no more rows than columns.
@@ -46,7 +92,8 @@ struct ReadingStream::Implementation {
   std::stop_token stop;
   std::size_t parameters = 0;
   std::vector<ReadingPiece> pieces;
-  std::vector<std::vector<std::size_t>> columns_of;  // per observations: where its columns stand among the estimates
+  std::vector<std::vector<std::size_t>> columns_of;     // per observations: where its columns stand among the estimates
+  std::vector<std::unique_ptr<FactoredSums>> factored;  // per observations: null where whole columns are quicker
   std::size_t buffer_size = 0;
   std::mutex mutex;
   std::vector<std::unique_ptr<Buffer>> idle;
@@ -85,7 +132,6 @@ struct ReadingStream::Implementation {
     const std::size_t residual_column = padded(columns.size(), kColumnMultiple);
     std::unique_ptr<Buffer> buffer = take();
     double* values = buffer->aligned;
-    std::vector<double> weight_root(Observations::kBlockSize);
     for (std::size_t first = piece.first; first < piece.last; first += Observations::kBlockSize) {
       const std::size_t count = std::min(Observations::kBlockSize, piece.last - first);
       const std::uint8_t* use = selected.use.empty() ? nullptr : selected.use.data() + first;
@@ -95,37 +141,10 @@ struct ReadingStream::Implementation {
       double* residuals = values + residual_column * stride;
       selected.observations->evaluate(first, count, problem.machine_parameters, selected.unknowns, residuals,
                                       jacobian ? values : nullptr, stride);
-      double cost = 0;
-      bool weighted = false;
-      for (std::size_t k = 0; k < count; ++k) {
-        double square = 0;
-        for (std::size_t r = 0; r < rows; ++r) square += residuals[r * count + k] * residuals[r * count + k];
-        weight_root[k] = 1;
-        if (use && !use[k]) {
-          weight_root[k] = 0;
-          weighted = true;
-        } else if (loss.kind == LossKind::none) {
-          cost += square / 2;
-        } else {
-          const double norm = std::sqrt(square);
-          weight_root[k] = std::sqrt(loss.weight(norm, static_cast<int>(rows)));
-          cost += loss.cost(norm, static_cast<int>(rows));
-          weighted = true;
-        }
-      }
+      const BlockWeights weights(residuals, rows, count, use, loss);
       const std::size_t used_columns = jacobian ? columns.size() : 0;
-      const auto weigh = [&](double* column) {
-        for (std::size_t r = 0; r < rows; ++r)
-          for (std::size_t k = 0; k < count; ++k) {
-            double& value = column[r * count + k];
-            // Set, not multiplied: what is left out may be no number at all.
-            value = weight_root[k] > 0 ? value * weight_root[k] : (weight_root[k] == 0 ? 0.0 : weight_root[k]);
-          }
-      };
-      if (weighted) {
-        weigh(residuals);
-        for (std::size_t c = 0; c < used_columns; ++c) weigh(values + c * stride);
-      }
+      weights.weigh(residuals, rows, count);
+      for (std::size_t c = 0; c < used_columns; ++c) weights.weigh(values + c * stride, rows, count);
       const auto clear_tail = [&](double* column) { std::fill(column + length, column + stride, 0.0); };
       clear_tail(residuals);
       for (std::size_t c = 0; c < used_columns; ++c) clear_tail(values + c * stride);
@@ -134,13 +153,14 @@ struct ReadingStream::Implementation {
       work(index,
            {piece.observations, first, count, static_cast<int>(rows), jacobian ? values : nullptr, residuals, stride,
             &columns},
-           cost);
+           weights.cost);
     }
     give_back(std::move(buffer));
   }
 
   /// Cost, gradient and normal equations of one piece.
   std::vector<double> products_of_piece(std::size_t index, SumKind kind, const Loss& loss) {
+    if (kind != SumKind::cost && factored[pieces[index].observations]) return factored_products(index, kind, loss);
     const std::size_t c = columns_of[pieces[index].observations].size();
     const std::size_t residual_column = padded(c, kColumnMultiple), size = residual_column + kColumnMultiple;
     double total = 0;
@@ -163,6 +183,44 @@ struct ReadingStream::Implementation {
     if (kind == SumKind::normal)
       for (std::size_t i = 0; i < c; ++i)
         values.insert(values.end(), products.data() + i + i * size, products.data() + c + i * size);
+    return values;
+  }
+
+  /// The same from the factors of the columns.
+  std::vector<double> factored_products(std::size_t index, SumKind kind, const Loss& loss) {
+    constexpr std::size_t kBlock = FactoredSums::kStride;
+    const ReadingPiece& piece = pieces[index];
+    const SelectedObservations& selected = problem.observations[piece.observations];
+    const FactoredSums& sums = *factored[piece.observations];
+    const FactoredColumns& form = sums.form();
+    const std::size_t rows = static_cast<std::size_t>(selected.observations->rows());
+    const bool normal = kind == SumKind::normal;
+    std::unique_ptr<Buffer> buffer = take();
+    double* const bases = buffer->aligned;
+    double* const scratch = bases + (form.bases() + 1) * kBlock;
+    double* const carriers = scratch + sums.scratch_size();
+    std::vector<double> products, values = {0.0};
+    for (std::size_t first = piece.first; first < piece.last; first += Observations::kBlockSize) {
+      const std::size_t count = std::min(Observations::kBlockSize, piece.last - first);
+      const std::uint8_t* use = selected.use.empty() ? nullptr : selected.use.data() + first;
+      if (use && std::all_of(use, use + count, [](std::uint8_t used) { return used == 0; })) continue;
+      const std::size_t stride = padded(rows * count, kLengthMultiple);
+      double* const residuals = carriers + form.carriers() * stride;
+      selected.observations->evaluate_factored(first, count, problem.machine_parameters, selected.unknowns, residuals,
+                                               {form, carriers, stride, bases, kBlock});
+      const BlockWeights weights(residuals, rows, count, use, loss);
+      values[0] += weights.cost;
+      std::fill_n(bases + form.bases() * kBlock, count, 1.0);
+      for (std::size_t c = 0; c <= form.carriers(); ++c) weights.weigh(carriers + c * stride, rows, count);
+      for (std::size_t b = 0; b <= form.bases(); ++b) {
+        weights.leave_out(bases + b * kBlock, count);
+        std::fill(bases + b * kBlock + count, bases + (b + 1) * kBlock, 0.0);
+      }
+      if (products.empty()) products.assign(sums.sums_size(normal), 0.0);
+      sums.add(normal, carriers, stride, bases, count, scratch, products.data());
+    }
+    give_back(std::move(buffer));
+    if (!products.empty()) sums.append(normal, products, values);
     return values;
   }
 
@@ -196,6 +254,15 @@ struct ReadingStream::Implementation {
       append_to_factor(factor, rows);
     });
     return {factor.data(), factor.data() + factor.size()};
+  }
+
+  std::unique_ptr<FactoredSums> factors_of(const SelectedObservations& selected) const {
+    std::optional<FactoredColumns> form =
+        selected.observations->column_factors(problem.machine_parameters, selected.unknowns);
+    if (!form) return nullptr;
+    auto sums =
+        std::make_unique<FactoredSums>(*std::move(form), static_cast<std::size_t>(selected.observations->rows()));
+    return sums->is_quicker() ? std::move(sums) : nullptr;
   }
 
   void take_fingerprints_of_readings() {
@@ -274,6 +341,11 @@ ReadingStream::ReadingStream(const Problem& problem, int threads, Summation summ
         padded(Observations::kBlockSize * static_cast<std::size_t>(selected.observations->rows()), kLengthMultiple);
     self.buffer_size = std::max(self.buffer_size, length * (padded(columns.size(), kColumnMultiple) + kColumnMultiple));
     self.columns_of.push_back(std::move(columns));
+    self.factored.push_back(self.factors_of(selected));
+    if (!self.factored.back()) continue;
+    const FactoredSums& sums = *self.factored.back();
+    self.buffer_size = std::max(self.buffer_size, (sums.form().carriers() + 2) * length + sums.scratch_size() +
+                                                      (sums.form().bases() + 1) * FactoredSums::kStride);
   }
   if (self.summation) self.take_fingerprints_of_readings();
 }

@@ -37,22 +37,52 @@ TEST(CrossProducts, agree_with_plain_sums_for_every_padded_size) {
       std::vector<double> a(count * stride), b(12 * stride);
       for (double& value : a) value = random.normal();
       for (double& value : b) value = random.normal();
-      std::vector<double> own(count * count, 1.0), cross(count * 12, 2.0);
+      std::vector<double> own(count * count, 1.0), cross(count * 10, 2.0);
       add_self_products(a.data(), count, stride, length, own.data(), count);
-      add_cross_products(a.data(), count, stride, b.data(), 12, stride, length, cross.data(), count);
+      add_cross_products(a.data(), count, stride, b.data(), 10, stride, length, cross.data(), count);
       for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t j = 0; j <= i; ++j) {
           double sum = 1;
           for (std::size_t k = 0; k < length; ++k) sum += a[i * stride + k] * a[j * stride + k];
           ASSERT_NEAR(own[i + j * count], sum, 1e-12 * static_cast<double>(length));
         }
-        for (std::size_t j = 0; j < 12; ++j) {
+        for (std::size_t j = 0; j < 10; ++j) {
           double sum = 2;
           for (std::size_t k = 0; k < length; ++k) sum += a[i * stride + k] * b[j * stride + k];
           ASSERT_NEAR(cross[i + j * count], sum, 1e-12 * static_cast<double>(length));
         }
       }
     }
+}
+
+TEST(CrossProducts, fold_the_rows_of_all_pairs_and_of_a_triangle) {
+  RandomStream random(8);
+  for (const std::size_t rows : {1, 3})
+    for (const std::size_t count : {1, 5, 128})
+      for (std::size_t others = 1; others <= 9; ++others) {
+        constexpr std::size_t kOut = 128, kColumns = 9;
+        const std::size_t length = rows * count + kLengthMultiple;
+        std::vector<double> values(2 * kColumns * length);
+        for (double& value : values) value = random.normal();
+        std::vector<const double*> a, b;
+        for (std::size_t i = 0; i < kColumns; ++i) a.push_back(&values[i * length]);
+        for (std::size_t i = 0; i < others; ++i) b.push_back(&values[(kColumns + i) * length]);
+        for (const bool triangle : {false, true}) {
+          const std::vector<const double*>& left = triangle ? b : a;
+          const std::size_t begin = others / 3, end = left.size();
+          std::vector<double> out((kColumns * kColumns + 1) * kOut, -7.0);
+          fold_products(left.data(), begin, end, b.data(), others, triangle, rows, count, out.data(), kOut);
+          std::size_t column = 0;
+          for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t j = triangle ? i : 0; j < others; ++j, ++column)
+              for (std::size_t k = 0; k < count; ++k) {
+                double sum = 0;
+                for (std::size_t r = 0; r < rows; ++r) sum += left[i][r * count + k] * b[j][r * count + k];
+                ASSERT_NEAR(out[column * kOut + k], sum, 1e-14) << others << " columns, " << i << ", " << j;
+              }
+          EXPECT_EQ(out[column * kOut], -7.0) << "wrote past the last column";
+        }
+      }
 }
 
 TEST(NormalEquations, sums_agree_with_the_stored_jacobian_and_leave_out_what_is_masked) {
