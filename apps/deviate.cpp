@@ -34,11 +34,11 @@ int run_deviate(const DeviateCommand& command, ProcessGroup* processes) {
   request.tolerances = command.options.tolerances;
   request.page = !command.options.output.empty();
   SharedWork work(processes, command.options.output, tell_sentence);
-  const ScanDeviations result =
-      deviations_of_file(std::move(request), command.files.scan_options(), command.streaming,
-                         {.progress = Progress("comparing").callback(), .work = work.driver()});
+  ScanDeviations result = deviations_of_file(std::move(request), command.files.scan_options(), command.streaming,
+                                             work.job(Progress("comparing").callback()));
   if (!work.is_first()) return kDone;
-  const auto files = command.options.output.empty() ? decltype(deviation_files(result))() : deviation_files(result);
+  std::vector<std::pair<std::string, std::string>> files;
+  if (!command.options.output.empty()) files = taken_deviation_files(result);
   const int code = finish_evaluation(result.report, command.options, files);
   work.done();
   return result.has_points() && !result.elsewhere ? code : static_cast<int>(kNegative);

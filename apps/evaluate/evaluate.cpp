@@ -39,9 +39,10 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
 int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& options,
                       const std::vector<std::pair<std::string, std::string>>& files) {
   if (!options.output.empty()) {
-    std::vector<std::pair<std::string, std::string>> all = evaluation_files(report);
-    all.insert(all.end(), files.begin(), files.end());
-    write_result_files(options.output, all);
+    ResultsFolder results(options.output);
+    for (const auto& [name, contents] : evaluation_files(report)) results.write(name, contents);
+    for (const auto& [name, contents] : files) results.write(name, contents);
+    results.commit();
   }
   if (options.json) {
     fmt::print("{}", json_text(evaluation_json(report)));

@@ -11,7 +11,7 @@ from several_processes import (TIMES, deviate_words, main, ranks_of, require, re
 
 
 def deviation_figures(runs):
-    """Figures of a scan alone, which is read in pieces, in every kind of file; and of tables that are not."""
+    """Of a scan that is read in pieces, in every kind of file, and of tables that are not: figures alone, and files."""
     lines = (runs.examples / "scan/bracket-scan.csv").read_text().splitlines()
     rows = [line for line in lines if line[0] not in "#x"] * 40
     numbers = array.array("f", (float(word) for row in rows for word in row.split(",")))
@@ -32,6 +32,7 @@ def deviation_figures(runs):
         for processes, threads in TIMES if name == "scan.ply" else TIMES[3::4]:
             done = runs.together(processes, *words, *threads) if processes else runs.alone(*words, *threads)
             require(done.returncode == 0 and done.stdout == alone.stdout, name, processes, threads, done.stderr)
+        require_same_results(runs, deviate_words(runs, runs.out / name), (*TIMES[:1], *TIMES[3::4]))
 
 
 def run_with_other_file(runs, words, scan, other):

@@ -29,6 +29,9 @@ SurfacePicture part_picture(const TriangleMesh& part, double refined_mm, int thr
 /// @return {"surface", "histograms"}, or an empty object if no point counts
 nlohmann::json deviation_page(const TriangleMesh& part, std::span<const SurfacePoint> closest,
                               const SurfaceDeviation& deviation, double limit_mm, int threads);
+/// The same of the points that count. @param measured  number of all points
+nlohmann::json deviation_page(const TriangleMesh& part, const SurfaceReadings& readings, std::size_t measured,
+                              double limit_mm, int threads);
 
 /// For a picture of a choice of the points: states the numbers and the distribution of all. @param page  if not empty
 void state_all_points(std::size_t measured, std::size_t counted, const FineHistogram& all, double limit_mm,

@@ -72,6 +72,7 @@ struct ScanDeviationsRequest {
 /// Deviations of a scan from its part, with their report. They hold no reference to the request.
 struct ScanDeviations {
   ScanComparison compared;  ///< of a scan that was read in blocks: counted points are those that are shown
+  std::string csv;          ///< deviation.csv, where it was made while points were compared; else empty
   EvaluationReport report;  ///< with the tolerances of the request
   double colour_mm = 0;     ///< of the full colour
   /// Half of the points that count lie farther from the part than a tenth of its diagonal: the scan is not where the
@@ -92,5 +93,7 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOp
 
 /// Files of the points that count, name and contents: deviation.csv and deviation.ply (coloured).
 std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result);
+/// The same of a result that is not needed any more: large texts are not copied.
+std::vector<std::pair<std::string, std::string>> taken_deviation_files(ScanDeviations& result);
 
 }  // namespace abbe

@@ -9,6 +9,7 @@
 #include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/shapes/cloud_columns.h"
+#include "abbe/formats/shapes/deviation_rows.h"
 #include "abbe/formats/shapes/e57_file.h"
 #include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/obj_file.h"
@@ -18,6 +19,7 @@
 #include "abbe/formats/shapes/point_normals.h"
 #include "abbe/formats/shapes/stl_file.h"
 #include "abbe/formats/shapes/xyz_text.h"
+#include "abbe/formats/text/appended_number.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
 
@@ -181,6 +183,11 @@ std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& 
                             const std::vector<std::string>& names) {
   assert(names.empty() || names.size() == static_cast<std::size_t>(cloud.size()));
   assert(deviation_mm.empty() || deviation_mm.size() == static_cast<std::size_t>(cloud.size()));
+  if (!cloud.has_normals() && !deviation_mm.empty() && names.empty()) {
+    std::string text(kDeviationCsvHeader);
+    append_deviation_rows({cloud.points.data(), static_cast<std::size_t>(cloud.points.size())}, deviation_mm, text);
+    return text;
+  }
   std::string text = "x_mm,y_mm,z_mm";
   if (cloud.has_normals()) text += ",nx,ny,nz";
   if (!deviation_mm.empty()) text += ",deviation_mm";
@@ -189,14 +196,28 @@ std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& 
   for (Eigen::Index i = 0; i < cloud.size(); ++i) {
     for (Eigen::Index k = 0; k < 3; ++k) {
       if (k > 0) text += ',';
-      text += shortest_text(cloud.points(k, i));
+      append_shortest_text(cloud.points(k, i), 0, text);
     }
-    for (Eigen::Index k = 0; cloud.has_normals() && k < 3; ++k) text += ',' + shortest_text(cloud.normals(k, i));
-    if (!deviation_mm.empty()) text += ',' + shortest_text(deviation_mm[static_cast<std::size_t>(i)]);
+    for (Eigen::Index k = 0; cloud.has_normals() && k < 3; ++k) {
+      append_shortest_text(cloud.normals(k, i), 0, text += ',');
+    }
+    if (!deviation_mm.empty()) append_shortest_text(deviation_mm[static_cast<std::size_t>(i)], 0, text += ',');
     if (!names.empty()) text += ',' + csv_field(names[static_cast<std::size_t>(i)]);
     text += '\n';
   }
   return text;
+}
+
+void append_deviation_rows(std::span<const double> points, std::span<const double> deviation_mm, std::string& text) {
+  assert(points.size() == 3 * deviation_mm.size());
+  for (std::size_t i = 0; i < deviation_mm.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      append_shortest_text(points[3 * i + k], 0, text);
+      text += ',';
+    }
+    append_shortest_text(deviation_mm[i], 0, text);
+    text += '\n';
+  }
 }
 
 }  // namespace abbe

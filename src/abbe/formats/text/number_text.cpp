@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "abbe/formats/text/appended_number.h"
 #include "abbe/formats/text/ascii_letters.h"
 #include "abbe/formats/text/not_finite.h"
 
@@ -115,33 +116,52 @@ NumberProblem parse_number(std::string_view text, int decimal_shift, double& val
   return NumberProblem::none;
 }
 
-std::string shortest_text(double value, int decimal_shift) {
+void append_shortest_text(double value, int decimal_shift, std::string& out) {
   if (!std::isfinite(value)) throw NotFinite("a number to be written");
-  std::array<char, 32> buffer;
-  const auto result =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(value), std::chars_format::scientific);
-  const std::string_view text(buffer.data(), static_cast<std::size_t>(result.ptr - buffer.data()));
+  if (std::signbit(value)) out += '-';
+  if (value == 0) {
+    out += '0';
+    return;
+  }
+  std::array<char, 32> digits;  // d.ddde+dd
+  // Where the standard library writes the same text, it is quickest.
+  if (decimal_shift == 0 && std::abs(value) >= 1e-4 && std::abs(value) < 1e15) {
+    const auto plain =
+        std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(value), std::chars_format::fixed);
+    out.append(digits.data(), plain.ptr);
+    return;
+  }
+  const auto written =
+      std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(value), std::chars_format::scientific);
+  const std::string_view text(digits.data(), static_cast<std::size_t>(written.ptr - digits.data()));
   const std::size_t mark = text.find('e');
-  std::string digits(text.substr(0, mark));
-  if (digits.size() > 1) digits.erase(1, 1);
   long exponent = 0;
   const char* first = text.data() + mark + 1;
   if (*first == '+') ++first;
   std::from_chars(first, text.data() + text.size(), exponent);
-
-  std::string out = std::signbit(value) ? "-" : "";
-  if (value == 0) return out + "0";
   exponent += decimal_shift;
-  const long count = static_cast<long>(digits.size());
+  // The digits without the point, which is the second character of several.
+  if (mark > 1) digits[1] = digits[0];
+  const std::string_view all = mark > 1 ? text.substr(1, mark - 1) : text.substr(0, 1);
+  const long count = static_cast<long>(all.size());
   if (exponent < -5 || exponent > 16) {
-    out += digits.substr(0, 1);
-    if (count > 1) out += "." + digits.substr(1);
-    return out + "e" + std::to_string(exponent);
+    out += all.front();
+    if (count > 1) (out += '.') += all.substr(1);
+    (out += 'e') += std::to_string(exponent);
+  } else if (exponent < 0) {
+    (out += "0.").append(static_cast<std::size_t>(-exponent - 1), '0') += all;
+  } else if (exponent >= count - 1) {
+    (out += all).append(static_cast<std::size_t>(exponent - count + 1), '0');
+  } else {
+    const auto point = static_cast<std::size_t>(exponent) + 1;
+    ((out += all.substr(0, point)) += '.') += all.substr(point);
   }
-  if (exponent < 0) return out + "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + digits;
-  if (exponent >= count - 1) return out + digits + std::string(static_cast<std::size_t>(exponent - count + 1), '0');
-  const auto point = static_cast<std::size_t>(exponent) + 1;
-  return out + digits.substr(0, point) + "." + digits.substr(point);
+}
+
+std::string shortest_text(double value, int decimal_shift) {
+  std::string out;
+  append_shortest_text(value, decimal_shift, out);
+  return out;
 }
 
 }  // namespace abbe

@@ -11,6 +11,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "abbe/formats/text/appended_number.h"
 #include "abbe/formats/text/decimal_text.h"
 #include "abbe/formats/text/unit.h"
 
@@ -45,6 +46,34 @@ TEST(NumberText, IsShortAndPlain) {
   EXPECT_EQ(shortest_text(1e300), "1e300");
   EXPECT_EQ(shortest_text(1.5e-9), "1.5e-9");
   EXPECT_EQ(shortest_text(123456.789), "123456.789");
+}
+
+TEST(NumberText, HasTheShortestDigitsOfEveryMagnitude) {
+  std::mt19937_64 generator(5);
+  std::uniform_real_distribution<double> power(-7, 19);
+  std::uniform_int_distribution<int> places(0, 16);
+  for (int i = 0; i < 50000; ++i) {
+    double value = std::pow(10.0, power(generator));
+    if (i % 3 == 0) value = std::round(value * 1e3) / 1e3 + (i % 2 == 0 ? 0 : std::pow(10.0, -places(generator)));
+    if (value == 0) continue;
+    std::array<char, 32> buffer;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific);
+    const std::string_view expected(buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data()));
+    // Without the point, the zeros in front and those behind: the digits alone.
+    const auto digits_of = [](std::string_view text) {
+      std::string digits;
+      for (const char c : text.substr(0, text.find('e'))) {
+        if (c != '.' && (c != '0' || !digits.empty())) digits += c;
+      }
+      digits.erase(digits.find_last_not_of('0') + 1);
+      return digits;
+    };
+    std::string text = "before,";
+    append_shortest_text(-value, 0, text);
+    ASSERT_EQ(text, "before,-" + shortest_text(value));
+    ASSERT_EQ(digits_of(shortest_text(value)), digits_of(expected)) << shortest_text(value);
+    ASSERT_EQ(shortest_text(value).find('e') != std::string::npos, value < 1e-5 || value >= 1e17) << value;
+  }
 }
 
 TEST(NumberText, ParsesAsTheStandardLibraryDoes) {

@@ -92,7 +92,11 @@ SurfacePicture part_picture(const TriangleMesh& part, double refined_mm, int thr
 
 nlohmann::json deviation_page(const TriangleMesh& part, std::span<const SurfacePoint> closest,
                               const SurfaceDeviation& deviation, double limit_mm, int threads) {
-  const SurfaceReadings readings = counted_readings(closest, deviation);
+  return deviation_page(part, counted_readings(closest, deviation), closest.size(), limit_mm, threads);
+}
+
+nlohmann::json deviation_page(const TriangleMesh& part, const SurfaceReadings& readings, std::size_t measured,
+                              double limit_mm, int threads) {
   if (readings.deviation_mm.empty()) return nlohmann::json::object();
   const double dense = radius_of_readings(readings);
   const SurfacePicture picture = part_picture(part, std::max(dense, 1e-6), threads);
@@ -106,7 +110,7 @@ nlohmann::json deviation_page(const TriangleMesh& part, std::span<const SurfaceP
   colours.average = surface_average(readings, picture.mesh.vertices, vertex_normals(picture.mesh),
                                     colours.averaging_radius_mm, threads);
   colours.readings = chosen(readings, drawn_points(readings.deviation_mm));
-  colours.measured = closest.size();
+  colours.measured = measured;
   colours.counted = readings.deviation_mm.size();
   colours.limit_mm = limit_mm;
   return {{"surface", surface_data(picture, &colours)},

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <span>
 #include <utility>
 
 #include "abbe/formats/files/file_stamp.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/deviation_rows.h"
 #include "abbe/formats/shapes/point_cloud_blocks.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/cross_products.h"
@@ -17,6 +18,7 @@
 #include "abbe/geometry/numbered_work.h"
 #include "abbe/study/scans/closest_points.h"
 #include "abbe/study/scans/deviation_steps.h"
+#include "abbe/study/scans/piece_deviations.h"
 #include "abbe/study/scans/scan_pieces.h"
 
 namespace abbe {
@@ -25,36 +27,27 @@ namespace {
 /// Points that are read and searched together: they stay in the cache of a processor.
 constexpr std::size_t kPointsTogether = 8192;
 
-/// Of one piece of the scan.
-struct PieceDeviations {
-  std::array<std::uint64_t, 4> counts{};  ///< points, not finite, beyond the border, too far
-  std::vector<double> counted;
-  std::vector<std::uint32_t> faces;  ///< [counted], or empty
+/// Columns of numbers that grow, and may need fewer than were thought in the end.
+class GrowingColumns {
+ public:
+  explicit GrowingColumns(Eigen::Index about) : columns_(3, about) {}
 
-  void pack(std::vector<std::byte>& bytes) const {
-    const std::uint64_t size = counted.size();
-    const std::array<std::span<const std::byte>, 4> parts{
-        std::as_bytes(std::span(counts)), std::as_bytes(std::span(&size, 1)), std::as_bytes(std::span(counted)),
-        std::as_bytes(std::span(faces))};
-    for (const std::span<const std::byte> part : parts) bytes.insert(bytes.end(), part.begin(), part.end());
+  /// Room for so many more.
+  double* grow(std::size_t count) {
+    const Eigen::Index before = size_;
+    size_ += static_cast<Eigen::Index>(count);
+    if (size_ > columns_.cols()) columns_.conservativeResize(3, std::max(size_, 2 * columns_.cols()));
+    return columns_.data() + 3 * before;
   }
 
-  void unpack(std::span<const std::byte> bytes, bool with_faces) {
-    std::uint64_t size = 0;
-    const auto take = [&bytes](std::span<std::byte> into) {
-      if (bytes.size() < into.size()) throw WorkError("deviations of a piece of the scan are cut off");
-      std::copy_n(bytes.begin(), into.size(), into.begin());
-      bytes = bytes.subspan(into.size());
-    };
-    take(std::as_writable_bytes(std::span(counts)));
-    take(std::as_writable_bytes(std::span(&size, 1)));
-    if (size > bytes.size() / sizeof(double)) throw WorkError("deviations of a piece of the scan are cut off");
-    counted.resize(size);
-    take(std::as_writable_bytes(std::span(counted)));
-    faces.resize(with_faces ? size : 0);
-    take(std::as_writable_bytes(std::span(faces)));
-    require_unpacked(bytes);
+  Eigen::Matrix3Xd taken() {
+    if (size_ < columns_.cols()) columns_.conservativeResize(3, size_);
+    return std::move(columns_);
   }
+
+ private:
+  Eigen::Matrix3Xd columns_;
+  Eigen::Index size_ = 0;
 };
 
 /// Fingerprint of the contents of a file, some words at a time.
@@ -82,13 +75,17 @@ class CountedJob {
         scan_(scan),
         surface_(surface),
         faces_(faces),
+        question_{request.largest_mm, faces.face_of_triangle, request.page},
         job_(job),
         stamp_(file_stamp(request.scan_file)),
         file_(request.scan_file),
         blocks_(file_.text(), request.scan_file, scan),
         pieces_(blocks_, kPointsTogether),
         found_(pieces_.count()),
-        is_there_(pieces_.count()) {
+        is_there_(pieces_.count()),
+        points_(about_columns()),
+        feet_(about_columns()),
+        normals_(about_columns()) {
     result_.all.reserve(blocks_.about_points());
     result_.faces.resize(faces.count());
   }
@@ -101,9 +98,7 @@ class CountedJob {
     work.fingerprint = [this] { return fingerprint(); };
     work.compute = [this](std::size_t piece) { compare(piece); };
     work.pack = [this](std::size_t piece, std::vector<std::byte>& bytes) { found_[piece].pack(bytes); };
-    work.unpack = [this](std::size_t piece, std::span<const std::byte> bytes) {
-      found_[piece].unpack(bytes, faces_.count() > 0);
-    };
+    work.unpack = [this](std::size_t piece, std::span<const std::byte> bytes) { found_[piece].unpack(bytes); };
     work.finished = [this](std::size_t piece) { note(piece); };
     do_work(job_.work, work);
     if (!(file_stamp(request_.scan_file) == stamp_)) {
@@ -111,14 +106,19 @@ class CountedJob {
     }
     if (added_ < found_.size()) return std::nullopt;
     describe_scan();
+    result_.points_mm = points_.taken();
+    result_.feet_mm = feet_.taken();
+    result_.normals = normals_.taken();
     return std::move(result_);
   }
 
  private:
+  Eigen::Index about_columns() const { return request_.page ? static_cast<Eigen::Index>(blocks_.about_points()) : 0; }
+
   std::uint64_t fingerprint() const {
     const RigidTransform& pose = request_.pose.transform;
     Digest digest;
-    digest.add_text("deviations that count");
+    digest.add_text(request_.page ? "deviations that count, with points" : "deviations that count");
     digest.add_text(vector_instructions());
     digest.add(fingerprint_of_text(file_.text()));
     digest.add(fingerprint_of_mesh(request_.part.mesh));
@@ -131,27 +131,15 @@ class CountedJob {
   void compare(std::size_t piece) {
     PieceDeviations& own = found_[piece];
     const RigidTransform& pose = request_.pose.transform;
+    own.reserve(pieces_.points_of_piece(), question_);
     for (std::size_t at = pieces_.begin(piece); at < pieces_.end(piece);) {
       const std::size_t end = std::min(blocks_.block_end(at, kPointsTogether), pieces_.end(piece));
       const CloudBlock block = blocks_.read(at, end, 1);
       const Eigen::Matrix3Xd points = (pose.rotation * block.points).colwise() + pose.translation;
-      own.counts[0] += static_cast<std::uint64_t>(points.cols());
       own.counts[1] += block.not_finite;
-      if (points.cols() > 0) {
-        for (const SurfacePoint& point : surface_.closest(points, 1, job_.stop)) add(point, own);
-      }
+      if (points.cols() > 0) own.add(points, surface_.closest(points, 1, job_.stop), question_);
       at = end;
     }
-  }
-
-  void add(const SurfacePoint& point, PieceDeviations& own) const {
-    const bool far = request_.largest_mm > 0 && !(std::abs(point.distance) <= request_.largest_mm);
-    if (point.on_border || far) {
-      ++own.counts[point.on_border ? 2 : 3];
-      return;
-    }
-    own.counted.push_back(point.distance);
-    if (faces_.count() > 0) own.faces.push_back(faces_.face_of_triangle[point.triangle]);
   }
 
   /// Puts the pieces together as they come: while others are still compared, that takes no time of its own.
@@ -163,11 +151,28 @@ class CountedJob {
       result_.scan.left_out += own.counts[1];
       result_.beyond_border += own.counts[2];
       result_.too_far += own.counts[3];
-      result_.all.insert(result_.all.end(), own.counted.begin(), own.counted.end());
-      for (std::size_t i = 0; i < own.faces.size(); ++i) result_.faces[own.faces[i]].push_back(own.counted[i]);
+      result_.all.insert(result_.all.end(), own.deviation_mm.begin(), own.deviation_mm.end());
+      for (std::size_t i = 0; i < own.faces.size(); ++i) result_.faces[own.faces[i]].push_back(own.deviation_mm[i]);
+      if (question_.with_points) add_points(own);
     }
     read_bytes_ += pieces_.end(piece) - pieces_.begin(piece);
     if (job_.progress) job_.progress(read_bytes_, blocks_.end() - blocks_.begin());
+  }
+
+  void add_points(const PieceDeviations& own) {
+    const std::size_t n = own.deviation_mm.size();
+    std::copy(own.points.begin(), own.points.end(), points_.grow(n));
+    std::copy(own.feet.begin(), own.feet.end(), feet_.grow(n));
+    double* normal = normals_.grow(n);
+    for (const std::uint32_t number : own.normal_of) {
+      normal = std::copy_n(own.normals.begin() + 3 * static_cast<std::ptrdiff_t>(number), 3, normal);
+    }
+    // The other pieces have about as much text, or else the text would be copied whenever it has doubled.
+    if (result_.csv.empty() && !own.rows.empty()) {
+      result_.csv.reserve(own.rows.size() / n * blocks_.about_points() / 16 * 17);
+      result_.csv = kDeviationCsvHeader;
+    }
+    result_.csv += own.rows;
   }
 
   void describe_scan() {
@@ -183,6 +188,7 @@ class CountedJob {
   const PointCloudOptions& scan_;
   const ClosestPointFinder& surface_;
   const SurfaceFaces& faces_;
+  PieceQuestion question_;
   const JobOptions& job_;
   FileStamp stamp_;
   MappedFile file_;
@@ -191,6 +197,7 @@ class CountedJob {
   std::vector<PieceDeviations> found_;  // of pieces that were not added yet
   std::vector<std::uint8_t> is_there_;
   CountedDeviations result_;
+  GrowingColumns points_, feet_, normals_;
   std::size_t added_ = 0, read_bytes_ = 0;
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
-// Internal to study: deviations of the points of a scan for figures alone, without a picture.
+// Internal to study: deviations of the points of a scan that is read in pieces.
+#include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "abbe/formats/shapes/point_cloud_file.h"
@@ -19,10 +21,14 @@ struct CountedDeviations {
   std::size_t beyond_border = 0, too_far = 0;
   std::vector<double> all;
   std::vector<std::vector<double>> faces;  ///< [faces] of the points nearest to each
+  // If the request wants a page:
+  Eigen::Matrix3Xd points_mm, feet_mm, normals;  ///< [3, n] points, their closest points on the part, and its normals
+  std::string csv;                               ///< deviation.csv
 };
 
 /// Compares the scan of a request with its part while it is read, piece by piece: pieces are numbered work, so several
-/// processes also share the reading. What is passed over: normals, and properties that are no coordinates.
+/// processes also share the reading. The rows of deviation.csv are written by the process that has compared them.
+/// What is passed over: normals, and properties that are no coordinates.
 /// @param job  progress: bytes that were compared
 /// @returns nothing where the first one of several processes has the result
 /// @throws InputError also for a file that PointCloudBlocks does not read, or that changes meanwhile; Stopped

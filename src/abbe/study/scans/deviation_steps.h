@@ -23,10 +23,11 @@ void note_scan_elsewhere(const MeshFile& part, double middle_mm, ScanDeviations&
 
 DeviationRequest asked_of_report(const ScanDeviationsRequest& request);
 
-/// Deviations of a scan in memory where no picture of them is asked for, so that its points need not stay there.
+/// Deviations of a scan that fits into memory, which is read and compared in pieces. No closest point is kept beyond
+/// what files and pages need.
 /// @returns nothing where the whole file has to be read
-std::optional<ScanDeviations> deviation_figures(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
-                                                const JobOptions& job);
+std::optional<ScanDeviations> deviations_in_pieces(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
+                                                   const JobOptions& job);
 
 /// Everything that was asked for and that deviations depend on, beside the files and the pose.
 std::string deviation_options_text(const ScanDeviationsRequest& request, const PointCloudOptions& scan);

@@ -99,12 +99,30 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOp
   return result;
 }
 
+namespace {
+
+std::string coloured_points(const ScanDeviations& result) {
+  const ScanComparison& compared = result.compared;
+  return ply_bytes({.points = compared.counted_points,
+                    .colours = deviation_colours(compared.counted_mm, result.colour_mm),
+                    .deviation = compared.counted_mm});
+}
+
+}  // namespace
+
 std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result) {
   const ScanComparison& compared = result.compared;
-  return {{"deviation.csv", point_cloud_csv({compared.counted_points, {}}, compared.counted_mm)},
-          {"deviation.ply", ply_bytes({.points = compared.counted_points,
-                                       .colours = deviation_colours(compared.counted_mm, result.colour_mm),
-                                       .deviation = compared.counted_mm})}};
+  return {{"deviation.csv",
+           result.csv.empty() ? point_cloud_csv({compared.counted_points, {}}, compared.counted_mm) : result.csv},
+          {"deviation.ply", coloured_points(result)}};
+}
+
+std::vector<std::pair<std::string, std::string>> taken_deviation_files(ScanDeviations& result) {
+  if (result.csv.empty()) return deviation_files(result);
+  std::vector<std::pair<std::string, std::string>> files;
+  files.emplace_back("deviation.csv", std::move(result.csv));
+  files.emplace_back("deviation.ply", coloured_points(result));
+  return files;
 }
 
 }  // namespace abbe

@@ -254,7 +254,7 @@ bool is_read_in_blocks(const std::string& scan_file, std::uint64_t above) {
 ScanDeviations deviations_of_file(ScanDeviationsRequest request, const PointCloudOptions& scan,
                                   const StreamingOptions& options, const JobOptions& job) {
   if (!is_read_in_blocks(request.scan_file, options.above)) {
-    if (std::optional<ScanDeviations> figures = deviation_figures(request, scan, job)) return std::move(*figures);
+    if (std::optional<ScanDeviations> found = deviations_in_pieces(request, scan, job)) return std::move(*found);
     request.scan = read_point_cloud(request.scan_file, scan);
     return find_deviations(request, job);
   }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <numeric>
 
 #include "abbe/geometry/parallel_blocks.h"
 
@@ -13,49 +13,29 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-/// Readings sorted by the cubes of a grid.
-class CubeGrid {
+/// Sorts by keys, and keeps the order of equal ones: by some bits at a time, of those in which keys differ.
+template <class Entry, class KeyOf>
+void sort_by_bits(std::vector<Entry>& entries, const KeyOf& key_of) {
+  constexpr int kBits = 11;
+  constexpr std::uint64_t kDigits = std::uint64_t{1} << kBits;
+  std::uint64_t differing = 0;
+  for (const Entry& entry : entries) differing |= key_of(entry) ^ key_of(entries.front());
+  std::vector<Entry> sorted(entries.size());
+  for (int shift = 0; shift < 64 && differing >> shift != 0; shift += kBits) {
+    shift += std::countr_zero(differing >> shift);
+    std::array<std::size_t, kDigits + 1> begin{};
+    for (const Entry& entry : entries) ++begin[(key_of(entry) >> shift & (kDigits - 1)) + 1];
+    for (std::size_t digit = 0; digit < kDigits; ++digit) begin[digit + 1] += begin[digit];
+    for (const Entry& entry : entries) sorted[begin[key_of(entry) >> shift & (kDigits - 1)]++] = entry;
+    entries.swap(sorted);
+  }
+}
+
+/// Cubes of one size, and their numbers.
+class Cubes {
  public:
-  CubeGrid(const Eigen::Matrix3Xd& points, double cell) : lower_(points.rowwise().minCoeff()), cell_(cell) {
-    const auto n = static_cast<std::size_t>(points.cols());
-    std::vector<std::uint64_t> keys(n);
-    for (std::size_t i = 0; i < n; ++i) keys[i] = key(cube_of(points.col(static_cast<Index>(i))));
-    order_.resize(n);
-    std::iota(order_.begin(), order_.end(), 0U);
-    std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
-    for (std::size_t i = 0; i < n; ++i) {
-      if (i == 0 || keys[order_[i]] != cubes_.back()) {
-        cubes_.push_back(keys[order_[i]]);
-        begins_.push_back(i);
-      }
-    }
-    begins_.push_back(n);
-  }
+  Cubes(const Eigen::Matrix3Xd& points, double cell) : lower_(points.rowwise().minCoeff()), cell_(cell) {}
 
-  std::vector<std::size_t> counts() const {
-    std::vector<std::size_t> result(cubes_.size());
-    for (std::size_t i = 0; i < cubes_.size(); ++i) result[i] = begins_[i + 1] - begins_[i];
-    return result;
-  }
-
-  /// The readings in the cube of the place and those about it, in a fixed order.
-  template <class Visit>
-  void near(const Vector3d& place, Visit visit) const {
-    const std::array<std::int64_t, 3> cube = cube_of(place);
-    for (std::int64_t x = cube[0] - 1; x <= cube[0] + 1; ++x) {
-      for (std::int64_t y = cube[1] - 1; y <= cube[1] + 1; ++y) {
-        // Three cubes along z lie side by side.
-        const auto from = std::lower_bound(cubes_.begin(), cubes_.end(), key({x, y, cube[2] - 1}));
-        const std::uint64_t last = key({x, y, cube[2] + 1});
-        for (auto at = from; at != cubes_.end() && *at <= last; ++at) {
-          const auto i = static_cast<std::size_t>(at - cubes_.begin());
-          for (std::size_t k = begins_[i]; k < begins_[i + 1]; ++k) visit(order_[k]);
-        }
-      }
-    }
-  }
-
- private:
   std::array<std::int64_t, 3> cube_of(const Vector3d& point) const {
     std::array<std::int64_t, 3> cube{};
     for (int k = 0; k < 3; ++k) {
@@ -70,9 +50,70 @@ class CubeGrid {
     for (const std::int64_t k : cube) result = (result << 21U) | static_cast<std::uint64_t>(k + 16);
     return result;
   }
+  std::uint64_t key_of(const Vector3d& point) const { return key(cube_of(point)); }
 
+ private:
   Vector3d lower_;
   double cell_;
+};
+
+/// Readings in each cube that has any.
+std::vector<std::size_t> readings_of_cubes(const Eigen::Matrix3Xd& points, double cell) {
+  const Cubes cubes(points, cell);
+  std::vector<std::uint64_t> keys(static_cast<std::size_t>(points.cols()));
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = cubes.key_of(points.col(static_cast<Index>(i)));
+  sort_by_bits(keys, [](std::uint64_t key) { return key; });
+  std::vector<std::size_t> counts;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i == 0 || keys[i] != keys[i - 1]) counts.push_back(0);
+    ++counts.back();
+  }
+  return counts;
+}
+
+/// Readings sorted by the cubes of a grid.
+class CubeGrid {
+ public:
+  CubeGrid(const Eigen::Matrix3Xd& points, double cell) : grid_(points, cell) {
+    struct Entry {
+      std::uint64_t key = 0;
+      std::uint32_t reading = 0;
+    };
+    const auto n = static_cast<std::size_t>(points.cols());
+    std::vector<Entry> entries(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      entries[i] = {grid_.key_of(points.col(static_cast<Index>(i))), static_cast<std::uint32_t>(i)};
+    }
+    sort_by_bits(entries, [](const Entry& entry) { return entry.key; });
+    order_.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      order_.push_back(entries[i].reading);
+      if (i > 0 && entries[i].key == cubes_.back()) continue;
+      cubes_.push_back(entries[i].key);
+      begins_.push_back(i);
+    }
+    begins_.push_back(n);
+  }
+
+  /// The readings in the cube of the place and those about it, in a fixed order.
+  template <class Visit>
+  void near(const Vector3d& place, Visit visit) const {
+    const std::array<std::int64_t, 3> cube = grid_.cube_of(place);
+    for (std::int64_t x = cube[0] - 1; x <= cube[0] + 1; ++x) {
+      for (std::int64_t y = cube[1] - 1; y <= cube[1] + 1; ++y) {
+        // Three cubes along z lie side by side.
+        const auto from = std::lower_bound(cubes_.begin(), cubes_.end(), Cubes::key({x, y, cube[2] - 1}));
+        const std::uint64_t last = Cubes::key({x, y, cube[2] + 1});
+        for (auto at = from; at != cubes_.end() && *at <= last; ++at) {
+          const auto i = static_cast<std::size_t>(at - cubes_.begin());
+          for (std::size_t k = begins_[i]; k < begins_[i + 1]; ++k) visit(order_[k]);
+        }
+      }
+    }
+  }
+
+ private:
+  Cubes grid_;
   std::vector<std::uint32_t> order_;
   std::vector<std::uint64_t> cubes_;  // occupied ones, ascending
   std::vector<std::size_t> begins_;   // in order_, and its end
@@ -87,7 +128,7 @@ double radius_of_readings(const SurfaceReadings& readings, std::size_t wanted) {
   const double largest = extent / 10;
   double cell = extent / std::sqrt(static_cast<double>(readings.foot.cols())) / 4;
   while (cell < largest) {
-    std::vector<std::size_t> counts = CubeGrid(readings.foot, cell).counts();
+    std::vector<std::size_t> counts = readings_of_cubes(readings.foot, cell);
     const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
     std::nth_element(counts.begin(), middle, counts.end());
     if (*middle >= wanted) break;

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/shapes/point_cloud_blocks.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/drawings/deviation_colours.h"
+#include "abbe/report/drawings/surface_picture.h"
 #include "abbe/report/evaluations/deviation_report.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/scans/counted_deviations.h"
@@ -40,10 +42,18 @@ bool fits_into_pieces(const std::string& scan_file) {
   return point_cloud_kind(file.text(), scan_file).in_blocks;
 }
 
-/// Deviations of a scan in memory where no picture of them is asked for: the points need not stay there.
+/// The page of deviations; they are in the result.
+nlohmann::json page_of(const ScanDeviationsRequest& request, CountedDeviations& counted, ScanDeviations& result) {
+  SurfaceReadings readings{std::move(counted.feet_mm), std::move(counted.normals),
+                           std::move(result.compared.counted_mm)};
+  nlohmann::json page = deviation_page(request.part.mesh, readings, counted.points, result.colour_mm, request.threads);
+  result.compared.counted_mm = std::move(readings.deviation_mm);
+  return page;
+}
+
 /// @throws InputError
-ScanDeviations figures_alone(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
-                             const JobOptions& job) {
+ScanDeviations compared_in_pieces(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
+                                  const JobOptions& job) {
   check_deviation_request(request);
   if (request.part.mesh.size() == 0) {
     throw InputError({.file = request.part_file}, "there is no triangle", "the surface of a part");
@@ -68,14 +78,19 @@ ScanDeviations figures_alone(const ScanDeviationsRequest& request, const PointCl
                        request.part, result.compared, result.colour_mm);
   if (result.has_points()) note_scan_elsewhere(request.part, amounts.middle_mm, result);
   apply_tolerances(request.tolerances, result.report);
+  if (!request.page) return result;
+  stop_if_asked(job.stop);
+  result.report.page = page_of(request, *counted, result);
+  result.compared.counted_points = std::move(counted->points_mm);
+  result.csv = std::move(counted->csv);
   return result;
 }
 
 }  // namespace
 
-std::optional<ScanDeviations> deviation_figures(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
-                                                const JobOptions& job) {
-  if (request.page || !fits_into_pieces(request.scan_file)) return std::nullopt;
+std::optional<ScanDeviations> deviations_in_pieces(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
+                                                   const JobOptions& job) {
+  if (!fits_into_pieces(request.scan_file)) return std::nullopt;
   JobOptions shared = job;
   bool has_begun = false;
   if (job.work) {
@@ -85,11 +100,11 @@ std::optional<ScanDeviations> deviation_figures(const ScanDeviationsRequest& req
     };
   }
   try {
-    return figures_alone(request, scan, shared);
+    return compared_in_pieces(request, scan, shared);
   } catch (const InputError&) {
     // A table of another form, perhaps; or the reader of whole files says what is wrong. Once several processes have
     // begun, another one may have found nothing wrong.
-    if (has_begun) throw;
+    if (has_begun && job.in_step.processes > 1) throw;
     return std::nullopt;
   }
 }
