@@ -25,6 +25,7 @@ void BlockWorkers::add(std::size_t block) {
   {
     const std::lock_guard lock(mutex_);
     blocks_.push_back(block);
+    ++unfinished_;
   }
   added_.notify_one();
 }
@@ -34,10 +35,16 @@ std::size_t BlockWorkers::waiting() const {
   return blocks_.size();
 }
 
+bool BlockWorkers::is_idle() const {
+  const std::lock_guard lock(mutex_);
+  return unfinished_ == 0 && failure_ == nullptr;
+}
+
 std::vector<std::size_t> BlockWorkers::finished(std::chrono::microseconds wait) {
   std::unique_lock lock(mutex_);
   done_.wait_for(lock, wait, [this] { return failure_ != nullptr || !finished_.empty(); });
   if (failure_) std::rethrow_exception(failure_);
+  unfinished_ -= finished_.size();
   return std::exchange(finished_, {});
 }
 

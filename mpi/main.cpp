@@ -1,5 +1,6 @@
 // abbe-mpi: the command `abbe` in several processes, which mpirun starts. Subcommands that share their work run in all of
 // them, others in the first one alone. The first one writes and prints.
+#include <malloc.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -40,6 +41,9 @@ class KeptMessages {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Messages and blocks come and go: their memory is kept, or else the kernel would clear new pages for each of them.
+  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  ::mallopt(M_TRIM_THRESHOLD, 256 << 20);
   abbe::MpiGroup group(&argc, &argv);
   const auto add = [&group](abbe::CommandLine& line) {
     line.processes = &group;

@@ -32,11 +32,12 @@ inline std::uint64_t take_number(std::span<const std::byte>& bytes) {
 
 /// Appends a block with its results.
 inline void put_block(const NumberedWork& work, std::size_t block, std::vector<std::byte>& bytes) {
-  std::vector<std::byte> results;
-  work.pack(block, results);
   put_number(block, bytes);
-  put_number(results.size(), bytes);
-  bytes.insert(bytes.end(), results.begin(), results.end());
+  const std::size_t at = bytes.size();
+  put_number(0, bytes);
+  work.pack(block, bytes);
+  const std::uint64_t size = bytes.size() - at - sizeof(size);
+  std::memcpy(&bytes[at], &size, sizeof(size));
 }
 
 /// Takes all blocks of a message: take(block, results).

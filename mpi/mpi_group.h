@@ -65,6 +65,7 @@ class MpiGroup : public ProcessGroup {
   void drop_sent();
   void wait_for_sent();
   Message receive(int from, const std::stop_token& stop = {});
+  Message receive_from_any();
   std::optional<Message> look();  ///< a message from anybody, if there is one
   [[noreturn]] void end();        ///< of all but the first: the first process has ended
   [[noreturn]] void fail_left(const Message& message) const;

@@ -75,7 +75,11 @@ class MpiGroup::FirstOfWork {
     BlockWorkers workers(work_);
     while (open_ > 0) {
       while (workers.waiting() < workers.threads() && to_hand_out_ > 0) workers.add(next_for(0));
-      for (const std::size_t block : workers.finished(kLook)) note(block);
+      if (workers.is_idle()) {
+        answer(group_.receive_from_any(), workers.threads());
+      } else {
+        for (const std::size_t block : workers.finished(kLook)) note(block);
+      }
       while (std::optional<Message> message = group_.look()) answer(*message, workers.threads());
     }
   }
@@ -155,8 +159,9 @@ class MpiGroup::OtherOfWork {
       if (!has_asked_ && !is_empty_ && workers_.waiting() < pace.ahead()) {
         ask({group_.works_, fingerprint, work_.blocks, 2 * pace.ahead() - workers_.waiting()});
       }
+      if (workers_.is_idle()) take(group_.receive(0));
       std::vector<std::byte> results;
-      for (const std::size_t block : workers_.finished(kLook)) {
+      for (const std::size_t block : workers_.is_idle() ? std::vector<std::size_t>() : workers_.finished(kLook)) {
         pace.add(1);
         put_block(work_, block, results);
         if (work_.reduce) work_.reduce(block);
