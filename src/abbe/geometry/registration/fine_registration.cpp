@@ -104,17 +104,25 @@ class Fit {
     MatrixXd seen, unseen;  ///< [6, k], orthonormal in the scaled parameters
   };
   Seen seen_motions(const RigidTransform& pose, double scale) const {
-    const Index stride = std::max<Index>(1, points_.cols() / kPointsForRank);
+    const Index stride = std::max<Index>(1, points_.cols() / kPointsForRank), together = kBlock * stride;
     Matrix6d information = Matrix6d::Zero();
-    SurfacePoint at;
-    for (Index i = 0; i < points_.cols(); i += stride) {
-      const Vector3d moved = pose * Vector3d(points_.col(number(i)));
-      std::uint32_t hint = hints_[static_cast<std::size_t>(i)];
-      surface_.closest_block(moved, &at, &hint);
-      if (at.on_border) continue;
-      // The part's own normal at the foot: facets would tell about turns of a cylinder that the part does not show.
-      const Vector6d row = gradient_of(smooth_.normal(at.triangle, at.point), at.point - reference(pose));
-      information += weight_at(options_.loss, at.distance, scale).weight * row * row.transpose();
+    Matrix3Xd moved(3, kBlock);
+    std::vector<SurfacePoint> found(kBlock);
+    std::vector<std::uint32_t> hints(kBlock);
+    for (Index first = 0; first < points_.cols(); first += together) {
+      const Index count = (std::min(together, points_.cols() - first) + stride - 1) / stride;
+      for (Index k = 0; k < count; ++k) {
+        moved.col(k) = pose * Vector3d(points_.col(number(first + k * stride)));
+        hints[static_cast<std::size_t>(k)] = hints_[static_cast<std::size_t>(first + k * stride)];
+      }
+      surface_.closest_block(moved.leftCols(count), found.data(), hints.data());
+      for (Index k = 0; k < count; ++k) {
+        const SurfacePoint& at = found[static_cast<std::size_t>(k)];
+        if (at.on_border) continue;
+        // The part's own normal at the foot: facets would tell about turns of a cylinder that the part does not show.
+        const Vector6d row = gradient_of(smooth_.normal(at.triangle, at.point), at.point - reference(pose));
+        information += weight_at(options_.loss, at.distance, scale).weight * row * row.transpose();
+      }
     }
     const SymmetricEigen<6> solver(information);
     Index unseen = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <span>
 
@@ -85,8 +86,10 @@ struct Drawn {
   Eigen::Index from = 0, to = 0;
 };
 
-/// Poses of a pair, and the numbers of those that are worth adding.
+/// Poses of a pair, and those that are worth adding: number, score, and above what it is given up.
 struct Tried {
+  static constexpr std::size_t kNumbers = 3;
+
   std::size_t poses = 0;
   std::vector<double> kept;
 
@@ -98,7 +101,9 @@ struct Tried {
   void unpack(std::span<const std::byte>& bytes) {
     std::array<double, 2> counts{};
     unpack_numbers(bytes, counts);
-    if (!(counts[1] >= 0 && counts[1] <= counts[0])) throw WorkError("a pair of points keeps more poses than it has");
+    if (!(counts[1] >= 0 && counts[1] <= kNumbers * counts[0])) {
+      throw WorkError("a pair of points keeps more poses than it has");
+    }
     poses = static_cast<std::size_t>(counts[0]);
     kept.resize(static_cast<std::size_t>(counts[1]));
     unpack_numbers(bytes, kept);
@@ -123,8 +128,8 @@ class PairSearch {
     std::size_t tried = 0, next = 0;
     // Until enough are kept, every pose is scored to the end, and twice if it were shared.
     for (; next < drawn_.size() && tried < options_.poses && !best_.is_full(); ++next) {
-      for_poses(drawn_[next], [&](const RigidTransform& pose) {
-        best_.add(pose);
+      for_poses(drawn_[next], [&](const auto& make_pose) {
+        best_.add(make_pose());
         ++tried;
       });
     }
@@ -245,8 +250,12 @@ class PairSearch {
 
   Tried try_pair(const Drawn& pair) const {
     Tried result;
-    for_poses(pair, [&](const RigidTransform& pose) {
-      if (best_.is_worth_adding(pose)) result.kept.push_back(static_cast<double>(result.poses));
+    for_poses(pair, [&](const auto& make_pose) {
+      if (const std::optional<PoseCandidates::Score> found = best_.score_worth_adding(make_pose())) {
+        const std::array<double, Tried::kNumbers> kept{static_cast<double>(result.poses), found->score,
+                                                       found->given_up_above};
+        result.kept.insert(result.kept.end(), kept.begin(), kept.end());
+      }
       ++result.poses;
     });
     return result;
@@ -254,18 +263,17 @@ class PairSearch {
 
   void add(const Drawn& pair, const Tried& found) {
     if (found.kept.empty()) return;
-    std::size_t number = 0;
-    auto next = found.kept.begin();
-    for_poses(pair, [&](const RigidTransform& pose) {
-      if (next != found.kept.end() && *next == static_cast<double>(number)) {
-        best_.add(pose);
-        ++next;
+    std::size_t number = 0, next = 0;
+    for_poses(pair, [&](const auto& make_pose) {
+      if (next < found.kept.size() && found.kept[next] == static_cast<double>(number)) {
+        best_.add(make_pose(), {found.kept[next + 1], found.kept[next + 2]});
+        next += Tried::kNumbers;
       }
       ++number;
     });
   }
 
-  /// Calls visit(pose) for the poses that a pair fixes.
+  /// Calls visit(make_pose) for the poses that a pair fixes.
   template <typename Visit>
   void for_poses(const Drawn& pair, const Visit& visit) const {
     const Eigen::Index from = pair.from, to = pair.to;
@@ -279,11 +287,13 @@ class PairSearch {
         for (auto at = first; at != last; ++at) {
           const Eigen::Index i = at->from, j = at->to;
           if (!feature.resembles(part_feature(i, j), diameter_)) continue;
-          const Vector3d a = part_.points.col(i), b = part_.points.col(j);
-          RigidTransform pose;
-          pose.rotation = axes_of(b - a, part_.normals.col(i)) * scan_axes.transpose();
-          pose.translation = 0.5 * (a + b) - pose.rotation * (0.5 * (p + q));
-          visit(pose);
+          visit([&] {
+            const Vector3d a = part_.points.col(i), b = part_.points.col(j);
+            RigidTransform pose;
+            pose.rotation = axes_of(b - a, part_.normals.col(i)) * scan_axes.transpose();
+            pose.translation = 0.5 * (a + b) - pose.rotation * (0.5 * (p + q));
+            return pose;
+          });
         }
       }
     }

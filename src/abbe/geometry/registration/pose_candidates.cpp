@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace abbe {
 namespace {
@@ -24,19 +25,20 @@ PoseCandidates::PoseCandidates(const DistanceGrid& grid, const Eigen::Matrix3Xd&
   for (const Eigen::Index i : order) scored_.push_back(scan.col(i));
 }
 
-double PoseCandidates::score(const RigidTransform& pose) const {
+PoseCandidates::Score PoseCandidates::score(const RigidTransform& pose) const {
   const double reach_square = reach_ * reach_;
-  double sum = 0;
+  double sum = 0, given_up_above = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < scored_.size(); ++k) {
     const double distance = static_cast<double>(grid_.at(pose * scored_[k]));
     sum += std::max(0.0, 1 - distance * distance / reach_square);
     // Poses that start far below what is kept do not recover: a term scatters by 0.4 at most.
     if ((k + 1) % kScoredAtOnce == 0) {
       const double count = static_cast<double>(k + 1);
-      if (sum < least() * count - 1.2 * std::sqrt(count)) break;
+      given_up_above = std::min(given_up_above, (sum + 1.2 * std::sqrt(count)) / count);
+      if (given_up_above < least()) return {};
     }
   }
-  return sum / static_cast<double>(scored_.size());
+  return {sum / static_cast<double>(scored_.size()), given_up_above};
 }
 
 bool PoseCandidates::alike(const RigidTransform& a, const RigidTransform& b) const {
@@ -44,9 +46,9 @@ bool PoseCandidates::alike(const RigidTransform& a, const RigidTransform& b) con
          a.rotation.cwiseProduct(b.rotation).sum() > kAlikeTrace;
 }
 
-void PoseCandidates::add(const RigidTransform& mesh_from_scan) {
-  const PoseCandidate candidate{mesh_from_scan, score(mesh_from_scan)};
-  if (candidate.score <= least()) return;
+void PoseCandidates::add(const RigidTransform& mesh_from_scan, const Score& score) {
+  if (score.score <= least() || score.given_up_above < least()) return;
+  const PoseCandidate candidate{mesh_from_scan, score.score};
   const auto same = std::find_if(best_.begin(), best_.end(), [&](const PoseCandidate& other) {
     return alike(candidate.mesh_from_scan, other.mesh_from_scan);
   });

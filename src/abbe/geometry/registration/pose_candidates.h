@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -26,17 +27,27 @@ class PoseCandidates {
   PoseCandidates(const DistanceGrid& grid, const Eigen::Matrix3Xd& scan, double reach, double diameter,
                  std::size_t most, std::mt19937_64& generator);
 
+  /// Score of a pose, and above which least score of those that are kept it is given up half way.
+  struct Score {
+    double score = 0, given_up_above = 0;
+  };
+
   /// Scores a pose and keeps it if it is among the best.
-  void add(const RigidTransform& mesh_from_scan);
+  void add(const RigidTransform& mesh_from_scan) { add(mesh_from_scan, score(mesh_from_scan)); }
+  /// The same of a pose that was scored when it was worth adding, perhaps by another process.
+  void add(const RigidTransform& mesh_from_scan, const Score& score);
   /// As many are kept as may be: a pose has to be better than one of them.
   bool is_full() const { return best_.size() >= most_; }
-  /// Whether add() would keep a pose now. If not, it will not keep it later either.
-  bool is_worth_adding(const RigidTransform& mesh_from_scan) const { return score(mesh_from_scan) > least(); }
+  /// The score of a pose that add() would keep now. If not, it will not keep it later either.
+  std::optional<Score> score_worth_adding(const RigidTransform& mesh_from_scan) const {
+    const Score found = score(mesh_from_scan);
+    return found.score > least() ? std::optional(found) : std::nullopt;
+  }
   /// Best first.
   std::vector<PoseCandidate> sorted() const;
 
  private:
-  double score(const RigidTransform& pose) const;
+  Score score(const RigidTransform& pose) const;
   double least() const { return best_.size() < most_ ? 0 : least_; }
   bool alike(const RigidTransform& a, const RigidTransform& b) const;
 
