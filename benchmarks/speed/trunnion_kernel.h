@@ -9,12 +9,13 @@ namespace abbe::benchmarks {
 /// What a kernel written by hand for the one machine of FiveAxisCase needs; it shows what the generality of ChainPlan
 /// costs.
 ///
-/// Known at compile time: order and kind of the axes, degrees and harmonics, no zero position errors, linear axes'
-/// reference at the origin. No intermediate result leaves the registers.
+/// Known at compile time: order and kind of the axes, degrees and harmonics, angles that suit short series, no zero
+/// position errors, linear axes' reference at the origin. The moved point and columns do not leave the
+/// registers on their way through the axes.
 struct TrunnionNumbers {
   explicit TrunnionNumbers(const FiveAxisCase& five_axis);
   double legendre[3][6][5];  ///< X Y Z: power series in q / 300 mm
-  double fourier[2][6][9];   ///< C A
+  double fourier[2][6][9];   ///< C A: powers of the cosine, [5] alone and [4] times the sine
   double direction[5][3];    ///< C A X Y Z, displaced
   double products[2][6];     ///< xx yy zz xy xz yz of the directions of C A
   double centre[2][3];       ///< displaced

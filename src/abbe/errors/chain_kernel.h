@@ -18,6 +18,9 @@ enum class Form { power, chebyshev, fourier, pieces };
 /// Polynomials with more coefficients are kept as Chebyshev series: their power form would lose digits.
 inline constexpr std::size_t kLargestPowerSize = 9;
 
+/// Fourier series with at most this many harmonics are evaluated as powers of the cosine: P(cos) + sin Q(cos).
+inline constexpr std::size_t kMostHarmonicPowers = 8;
+
 /// One component of an error motion as a function of the scaled argument of its group.
 struct Series {
   int component = 0;     ///< 0 .. 5: EX .. EC
@@ -25,6 +28,7 @@ struct Series {
   std::size_t first =
       0;  ///< index into CompiledChain::numbers; power, chebyshev: c0, c1, ...; fourier: mean, cos1, sin1,
           ///< ...; pieces: four powers of the local position per interval
+  std::size_t powers = 0;  ///< fourier with few harmonics: index into numbers; [size + 1] of P, [size] of Q
 };
 
 /// Series of one axis that share their argument, so that it (or its sine, or its interval) is computed once.
@@ -78,14 +82,18 @@ struct AxisStep {
   bool has_errors = false;
   bool has_angles = false;  ///< any of EA, EB, EC
   bool first_order = false;
-  bool has_reference = false;  ///< reference is not the origin
-  double sign = 1;             ///< displacement = sign * (q + zero_position); sense of the axis, negative if inverted
+  double sign = 1;  ///< displacement = sign * (q + zero_position); sense of the axis, negative if inverted
   double zero_position = 0;
   double zero_sine = 0, zero_cosine = 1;
   double direction[3] = {};           ///< of the displaced axis line
+  double signed_direction[3] = {};    ///< sign times it
   double direction_products[6] = {};  ///< xx, yy, zz, xy, xz, yz of it
   double centre[3] = {};              ///< a point on it
   double reference[3] = {};           ///< Axis::point
+  double before[3] = {};              ///< what the first of error and motion turns about: reference or centre
+  double between[3] = {};             ///< that minus what the second turns about
+  double after[3] = {};               ///< what the second turns about
+  bool has_offsets = false;           ///< any of these is not zero
   double tilt_axes[3][3] = {};        ///< [k]: axis about which EA0, EB0, EC0 turns the line
   double lowest = 0, highest = 0;     ///< positions covered by all terms
   std::vector<FunctionGroup> groups;  ///< those without a state first

@@ -1,6 +1,7 @@
 #include "abbe/errors/chain_kernel_functions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +10,32 @@ namespace {
 
 bool is_polynomial(BasisKind kind) {
   return kind == BasisKind::monomial || kind == BasisKind::legendre || kind == BasisKind::chebyshev;
+}
+
+/// [h][k]: coefficient of x^k in the Chebyshev polynomial of degree h, of the first or the second kind.
+using ChebyshevPowers = std::array<std::array<double, kMostHarmonicPowers + 1>, kMostHarmonicPowers + 1>;
+
+constexpr ChebyshevPowers chebyshev_powers(int kind) {
+  ChebyshevPowers powers{};
+  powers[0][0] = 1;
+  powers[1][1] = kind;
+  for (std::size_t h = 2; h <= kMostHarmonicPowers; ++h) {
+    for (std::size_t k = 0; k <= h; ++k) powers[h][k] = (k > 0 ? 2 * powers[h - 1][k - 1] : 0) - powers[h - 2][k];
+  }
+  return powers;
+}
+
+/// cos(h q) = T_h(cos q) and sin(h q) = sin(q) U_(h-1)(cos q) turn harmonics into powers of the cosine.
+/// @param harmonics  mean, cos1, sin1, cos2, ...
+/// @param powers  [number + 1] of P, [number] of Q
+void set_harmonic_powers(const double* harmonics, std::size_t number, double* powers) {
+  static constexpr ChebyshevPowers kFirst = chebyshev_powers(1), kSecond = chebyshev_powers(2);
+  std::fill_n(powers, 2 * number + 1, 0.0);
+  powers[0] = harmonics[0];
+  for (std::size_t h = number; h > 0; --h) {
+    for (std::size_t k = 0; k <= h; ++k) powers[k] += kFirst[h][k] * harmonics[2 * h - 1];
+    for (std::size_t k = 0; k < h; ++k) powers[number + 1 + k] += kSecond[h - 1][k] * harmonics[2 * h];
+  }
 }
 
 std::vector<double> times_argument(const std::vector<double>& series, Form form) {
@@ -227,6 +254,10 @@ void FunctionCompiler::add_terms_of_state(CompiledChain& chain, AxisStep& step, 
         series.size = size;
         series.first = chain.numbers.size();
         chain.numbers.resize(chain.numbers.size() + numbers);
+        if (group->form == Form::fourier && size <= kMostHarmonicPowers) {
+          series.powers = chain.numbers.size();
+          chain.numbers.resize(chain.numbers.size() + numbers);
+        }
       }
       term.first_number = series.first;
       term.series_size = numbers;
@@ -295,6 +326,15 @@ void FunctionCompiler::set_values(CompiledChain& chain, std::span<const double> 
         double sum = 0;
         for (std::size_t n = 0; n < term.size; ++n) sum += term.conversion[k * term.size + n] * coefficients[n];
         series[k] += sum;
+      }
+    }
+  }
+  for (const AxisStep& step : chain.steps) {
+    for (const FunctionGroup& group : step.groups) {
+      if (group.form != Form::fourier) continue;
+      for (const Series& series : group.series) {
+        if (series.size > kMostHarmonicPowers) continue;
+        set_harmonic_powers(&chain.numbers[series.first], series.size, &chain.numbers[series.powers]);
       }
     }
   }

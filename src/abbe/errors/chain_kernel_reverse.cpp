@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include "abbe/errors/chain_kernel_targets.h"
 
 #undef HWY_TARGET_INCLUDE

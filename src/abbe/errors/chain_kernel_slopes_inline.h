@@ -127,7 +127,7 @@ inline HWY_NOINLINE std::size_t next_functions(const BasisUse& use, const AxisLa
         SineCosine harmonic{load(sequence.argument[1].v + k), a};
         if (n > 1) {
           harmonic = {before, load(f[i].v + k)};
-          turn({load(sequence.argument[1].v + k), a}, harmonic.cosine, harmonic.sine);
+          turn(SineCosine{load(sequence.argument[1].v + k), a}, harmonic.cosine, harmonic.sine);
         }
         store(harmonic.cosine, f[2 + i].v + k);
         store(harmonic.sine, f[3 + i].v + k);

@@ -211,7 +211,6 @@ struct ChainPlan::Implementation {
     step.sign = inverted ? -axis.sense() : axis.sense();
     for (int k = 0; k < 3; ++k) step.reference[k] = axis.point[k];
     for (int k = 0; k < 3; ++k) step.nominal_direction[k] = axis.direction[k];
-    step.has_reference = !axis.point.isZero(0);
     set_range(step, errors);
     std::size_t parameter = first_reversal(errors) - errors.locations.size();
     for (const LocationError& location : errors.locations) {
@@ -230,6 +229,20 @@ struct ChainPlan::Implementation {
     for (const ErrorMotion& motion : errors.motions) {
       if (motion.axis == index) std::fill_n(&chain.influences[parameter], motion.coefficients.size(), std::uint8_t{1});
       parameter += motion.coefficients.size();
+    }
+  }
+
+  /// What the point is shifted by before, between and after error and motion, so that both turn about the origin.
+  static void set_offsets(AxisStep& step) {
+    step.has_offsets = false;
+    for (int i = 0; i < 3; ++i) {
+      // An error without angles and a linear motion are the same about any point.
+      const double error = step.has_angles ? step.reference[i] : step.rotary ? step.centre[i] : 0.0;
+      const double motion = step.rotary ? step.centre[i] : error;
+      step.before[i] = step.error_first ? error : motion;
+      step.after[i] = step.error_first ? motion : error;
+      step.between[i] = step.before[i] - step.after[i];
+      step.has_offsets = step.has_offsets || step.before[i] != 0 || step.after[i] != 0;
     }
   }
 
@@ -254,9 +267,11 @@ struct ChainPlan::Implementation {
       step.direction_products[i] = direction[i] * direction[i];
       step.direction_products[3 + i] = direction[i == 2 ? 1 : 0] * direction[i == 0 ? 1 : 2];
       step.direction[i] = direction[i];
+      step.signed_direction[i] = step.sign * direction[i];
       step.centre[i] = centre[i];
       for (int k = 0; k < 3; ++k) step.tilt_axes[k][i] = axes(i, k);
     }
+    set_offsets(step);
   }
 };
 

@@ -127,9 +127,9 @@ TEST(ChainPlan, OneColumnOfTheRotationMayBeWantedAlone) {
 }
 
 TEST(ChainPlan, DoesNotDependOnHowManyPosesAreEvaluatedTogether) {
-  for (std::uint64_t seed = 500; seed < 504; ++seed) {
-    // Angles around the limit of the short series, so that neighbours take different ways.
-    const Case c = random_case(seed, 0.4);
+  for (std::uint64_t seed = 500; seed < 508; ++seed) {
+    // Angles around the limits of the short series, so that neighbours take different ways.
+    const Case c = random_case(seed, seed < 504 ? 0.4 : 0.1);
     const ChainPlan plan(c.machine, c.errors, Body::tool, Body::workpiece);
     RandomStream random(seed);
     Batch all(c.machine, 300, random);
@@ -149,6 +149,29 @@ TEST(ChainPlan, DoesNotDependOnHowManyPosesAreEvaluatedTogether) {
       if (count < 300) {
         EXPECT_EQ(some.seen[0][count], -1e300) << "wrote past the end";
       }
+    }
+  }
+}
+
+TEST(ChainPlan, AddsAnyNumberOfHarmonics) {
+  for (int harmonics = 1; harmonics <= 12; ++harmonics) {
+    Case c;
+    c.machine.axes.push_back({"X", AxisKind::linear, ChainSide::tool, false, Eigen::Vector3d::UnitX()});
+    const Basis basis{.kind = BasisKind::fourier, .order = harmonics, .from = -5, .to = 5, .period = 7};
+    RandomStream random(static_cast<std::uint64_t>(harmonics));
+    std::vector<double> coefficients(basis.size());
+    for (double& value : coefficients) value = random.uniform(-1, 1);
+    c.errors.motions.push_back({0, Component::Y, basis, coefficients, {}});
+    Batch batch(c.machine, 100, random);
+    for (double& value : batch.commands[0]) value = random.uniform(-5, 5);
+    batch.transform(ChainPlan(c.machine, c.errors, Body::tool, Body::bed));
+    for (std::size_t k = 0; k < batch.count(); ++k) {
+      double expected = batch.start[1][k] + coefficients[0];
+      for (std::size_t h = 1; 2 * h < coefficients.size(); ++h) {
+        const double angle = static_cast<double>(h) * 2 * std::numbers::pi / 7 * batch.commands[0][k];
+        expected += coefficients[2 * h - 1] * std::cos(angle) + coefficients[2 * h] * std::sin(angle);
+      }
+      EXPECT_NEAR(batch.seen[1][k], expected, 2e-13) << harmonics << " harmonics";
     }
   }
 }

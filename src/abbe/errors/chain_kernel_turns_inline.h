@@ -1,0 +1,242 @@
+// Vectors of poses and their rotations, compiled once per processor generation (no #pragma once: Highway includes this
+// file again for each target).
+
+#include <cstddef>
+
+#include "abbe/errors/chain_kernel.h"
+#include "hwy/highway.h"
+
+#if defined(ABBE_ERRORS_CHAIN_KERNEL_TURNS_INLINE_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ABBE_ERRORS_CHAIN_KERNEL_TURNS_INLINE_H_
+#undef ABBE_ERRORS_CHAIN_KERNEL_TURNS_INLINE_H_
+#else
+#define ABBE_ERRORS_CHAIN_KERNEL_TURNS_INLINE_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace abbe::chain {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::ScalableTag<double>;
+using Vector = hn::Vec<Tag>;
+using IndexTag = hn::RebindToSigned<Tag>;
+
+constexpr std::size_t kBlock = ChainPlan::kBlockSize;
+
+HWY_INLINE Vector load(const double* p) { return hn::Load(Tag(), p); }
+HWY_INLINE Vector set(double value) { return hn::Set(Tag(), value); }
+HWY_INLINE void store(Vector v, double* p) { hn::Store(v, Tag(), p); }
+
+/// One value per pose of the block; whole vectors are read and written. Longer than the block, so that the same pose
+/// of several lanes does not lie at multiples of 4096 bytes: processors take such addresses for the same at first.
+struct alignas(128) Lane {
+  double v[kBlock + 16];
+};
+
+struct Vector3 {
+  Vector x, y, z;
+};
+
+HWY_INLINE Vector3 load(const Lane* lanes, std::size_t k) {
+  return {load(lanes[0].v + k), load(lanes[1].v + k), load(lanes[2].v + k)};
+}
+HWY_INLINE void store(const Vector3& a, Lane* lanes, std::size_t k) {
+  store(a.x, lanes[0].v + k);
+  store(a.y, lanes[1].v + k);
+  store(a.z, lanes[2].v + k);
+}
+HWY_INLINE Vector3 set3(const double* p) { return {set(p[0]), set(p[1]), set(p[2])}; }
+HWY_INLINE Vector3 operator+(const Vector3& a, const Vector3& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vector3 operator-(const Vector3& a, const Vector3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector3 zero3() { return {set(0), set(0), set(0)}; }
+HWY_INLINE Vector3 negative(const Vector3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
+HWY_INLINE Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
+          hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
+}
+HWY_INLINE Vector dot(const Vector3& a, const Vector3& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+struct SineCosine {
+  Vector sine, cosine;
+};
+
+/// (u, v) turned by the angle: (u cos - v sin, u sin + v cos); towards -: by the negative angle.
+HWY_INLINE void turn(const SineCosine& a, Vector& u, Vector& v) {
+  const Vector old = u;
+  u = hn::NegMulAdd(v, a.sine, hn::Mul(u, a.cosine));
+  v = hn::MulAdd(old, a.sine, hn::Mul(v, a.cosine));
+}
+HWY_INLINE void turn_back(const SineCosine& a, Vector& u, Vector& v) {
+  const Vector old = u;
+  u = hn::MulAdd(v, a.sine, hn::Mul(u, a.cosine));
+  v = hn::NegMulAdd(old, a.sine, hn::Mul(v, a.cosine));
+}
+
+/// Sine and cosine, absolute error below 2e-16 for |x| up to 1e6 rad.
+///
+/// Reduction by pi/2 in three parts of 33 bits, so that the products are exact without FMA too; polynomials of
+/// degree 13 and 14 on |r| <= pi/4. Source: the argument reduction of Cody and Waite (1980); coefficients of fdlibm.
+HWY_INLINE SineCosine sine_cosine(Vector x) {
+  const Tag d;
+  const IndexTag di;
+  // Adding 1.5 * 2^52 rounds to a whole number and leaves it in the low bits; cheap on every processor.
+  const Vector rounder = set(6755399441055744.0);
+  const Vector rounded = hn::MulAdd(x, set(6.36619772367581382433e-01), rounder);
+  const Vector n = hn::Sub(rounded, rounder);
+  Vector r = hn::NegMulAdd(n, set(1.57079632673412561417e+00), x);
+  r = hn::NegMulAdd(n, set(6.07710050630396597660e-11), r);
+  r = hn::NegMulAdd(n, set(2.02226624879595063154e-21), r);
+  const Vector z = hn::Mul(r, r);
+  // Pairs of terms first: a chain of all terms would be longer than what the processor can overlap.
+  const Vector zz = hn::Mul(z, z);
+  const auto pairs = [&](double c0, double c1, double c2, double c3, double c4, double c5) HWY_ATTR {
+    const Vector low = hn::MulAdd(z, set(c1), set(c0)), high = hn::MulAdd(z, set(c5), set(c4));
+    return hn::MulAdd(zz, hn::MulAdd(zz, high, hn::MulAdd(z, set(c3), set(c2))), low);
+  };
+  Vector s = pairs(-1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+                   2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10);
+  s = hn::MulAdd(hn::Mul(z, r), s, r);
+  Vector c = pairs(4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+                   -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11);
+  c = hn::MulAdd(zz, c, hn::MulAdd(z, set(-0.5), set(1.0)));
+  const auto quadrant = hn::BitCast(di, rounded);
+  // Bits are exchanged in odd quadrants by exclusive or: a choice by mask costs three operations with AVX2.
+  const Vector odd = hn::BitCast(d, hn::Neg(hn::And(quadrant, hn::Set(di, 1))));
+  const Vector other = hn::And(hn::Xor(s, c), odd), sign = hn::SignBit(d);
+  const Vector sine_sign = hn::And(hn::BitCast(d, hn::ShiftLeft<62>(quadrant)), sign);
+  const Vector cosine_sign = hn::Xor(sine_sign, hn::And(odd, sign));
+  return {hn::Xor(hn::Xor(s, other), sine_sign), hn::Xor(hn::Xor(c, other), cosine_sign)};
+}
+
+/// A turn by a small angle as three shears, u -= t v, v += s u, u -= t v: three multiply-adds instead of four
+/// operations.
+struct Shears {
+  Vector half_tangent, sine;  ///< t, tangent of half the angle, and s
+};
+HWY_INLINE void turn(const Shears& a, Vector& u, Vector& v) {
+  u = hn::NegMulAdd(a.half_tangent, v, u);
+  v = hn::MulAdd(a.sine, u, v);
+  u = hn::NegMulAdd(a.half_tangent, v, u);
+}
+HWY_INLINE void turn_back(const Shears& a, Vector& u, Vector& v) {
+  u = hn::MulAdd(a.half_tangent, v, u);
+  v = hn::NegMulAdd(a.sine, u, v);
+  u = hn::MulAdd(a.half_tangent, v, u);
+}
+
+/// Of E = Rz(EC) Ry(EB) Rx(EA).
+template <class Turn>
+struct ErrorTurns {
+  Turn a, b, c;  ///< by EA, EB, EC
+};
+using ErrorRotation = ErrorTurns<SineCosine>;
+
+/// Series for angles below 1/256 rad (next terms below 5e-18), from the angle and its square.
+HWY_INLINE SineCosine short_sine_cosine(Vector x, Vector z) {
+  const Vector s = hn::MulAdd(z, set(1.0 / 120), set(-1.0 / 6));
+  const Vector c = hn::MulAdd(z, set(1.0 / 24), set(-0.5));
+  return {hn::MulAdd(hn::Mul(x, z), s, x), hn::MulAdd(z, c, set(1.0))};
+}
+template <class Mask>
+HWY_INLINE SineCosine choose(Mask large, const SineCosine& yes, const SineCosine& no) {
+  return {hn::IfThenElse(large, yes.sine, no.sine), hn::IfThenElse(large, yes.cosine, no.cosine)};
+}
+/// Full range where the three angles are not small together; decided per pose, so that a result does not depend on its
+/// neighbours.
+inline HWY_NOINLINE ErrorRotation with_large_angles(const Vector3& angles, const Vector3& squares, ErrorRotation e) {
+  const Vector sum = hn::Add(hn::Add(squares.x, squares.y), squares.z);
+  const auto large = hn::Ge(sum, set(0x1p-16));
+  e.a = choose(large, sine_cosine(angles.x), e.a);
+  e.b = choose(large, sine_cosine(angles.y), e.b);
+  e.c = choose(large, sine_cosine(angles.z), e.c);
+  return e;
+}
+HWY_INLINE Vector3 squares_of(const Vector3& a) { return {hn::Mul(a.x, a.x), hn::Mul(a.y, a.y), hn::Mul(a.z, a.z)}; }
+/// Whether any pose of the vector needs the full range.
+HWY_INLINE bool has_large_angles(const Vector3& angles) {
+  const Vector3 z = squares_of(angles);
+  return !hn::AllFalse(Tag(), hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16)));
+}
+/// Whether any pose of the vector has angles that are too large for error_shears(); decided per pose by are_large().
+HWY_INLINE auto are_large(const Vector3& angles) {
+  const Vector3 z = squares_of(angles);
+  return hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-20));
+}
+/// Series for angles below 1/1024 rad (next terms below 1e-17).
+HWY_INLINE Shears short_shears(Vector x, Vector z) {
+  return {hn::Mul(x, hn::MulAdd(z, set(1.0 / 24), set(0.5))), hn::Mul(x, hn::MulAdd(z, set(-1.0 / 6), set(1.0)))};
+}
+HWY_INLINE ErrorTurns<Shears> error_shears(const Vector3& angles) {
+  const Vector3 z = squares_of(angles);
+  return {short_shears(angles.x, z.x), short_shears(angles.y, z.y), short_shears(angles.z, z.z)};
+}
+HWY_INLINE ErrorRotation short_error_rotation(const Vector3& angles) {
+  const Vector3 z = squares_of(angles);
+  return {short_sine_cosine(angles.x, z.x), short_sine_cosine(angles.y, z.y), short_sine_cosine(angles.z, z.z)};
+}
+HWY_INLINE ErrorRotation error_rotation(const Vector3& angles) {
+  const ErrorRotation e = short_error_rotation(angles);
+  return HWY_UNLIKELY(has_large_angles(angles)) ? with_large_angles(angles, squares_of(angles), e) : e;
+}
+/// (I + skew(e))^-1 r, for the first-order composition of published models.
+HWY_INLINE Vector3 first_order_inverse(const Vector3& e, const Vector3& r) {
+  const Vector along = dot(e, r), scale = hn::Div(set(1.0), hn::Add(set(1.0), dot(e, e)));
+  const Vector3 c = cross(e, r);
+  return {hn::Mul(scale, hn::MulAdd(e.x, along, hn::Sub(r.x, c.x))),
+          hn::Mul(scale, hn::MulAdd(e.y, along, hn::Sub(r.y, c.y))),
+          hn::Mul(scale, hn::MulAdd(e.z, along, hn::Sub(r.z, c.z)))};
+}
+
+/// Rotation matrix, rows.
+struct Matrix3 {
+  Vector3 x, y, z;
+};
+HWY_INLINE Vector3 times(const Matrix3& m, const Vector3& a) { return {dot(m.x, a), dot(m.y, a), dot(m.z, a)}; }
+/// Their product plus b.
+HWY_INLINE Vector3 times_plus(const Matrix3& m, const Vector3& a, const Vector3& b) {
+  return {hn::MulAdd(m.x.x, a.x, hn::MulAdd(m.x.y, a.y, hn::MulAdd(m.x.z, a.z, b.x))),
+          hn::MulAdd(m.y.x, a.x, hn::MulAdd(m.y.y, a.y, hn::MulAdd(m.y.z, a.z, b.y))),
+          hn::MulAdd(m.z.x, a.x, hn::MulAdd(m.z.y, a.y, hn::MulAdd(m.z.z, a.z, b.z)))};
+}
+HWY_INLINE Vector3 transposed_times(const Matrix3& m, const Vector3& a) {
+  return {hn::MulAdd(m.x.x, a.x, hn::MulAdd(m.y.x, a.y, hn::Mul(m.z.x, a.z))),
+          hn::MulAdd(m.x.y, a.x, hn::MulAdd(m.y.y, a.y, hn::Mul(m.z.y, a.z))),
+          hn::MulAdd(m.x.z, a.x, hn::MulAdd(m.y.z, a.y, hn::Mul(m.z.z, a.z)))};
+}
+HWY_INLINE Matrix3 set_matrix(const double* m) { return {set3(m), set3(m + 3), set3(m + 6)}; }
+
+/// Rotation of a rotary axis about its displaced line by the angle times its sign.
+HWY_INLINE Matrix3 rotation(const AxisStep& step, const SineCosine& a) {
+  const Vector rest = hn::Sub(set(1.0), a.cosine);
+  const Vector xs = hn::Mul(set(step.signed_direction[0]), a.sine);
+  const Vector ys = hn::Mul(set(step.signed_direction[1]), a.sine);
+  const Vector zs = hn::Mul(set(step.signed_direction[2]), a.sine);
+  const Vector xy = set(step.direction_products[3]), xz = set(step.direction_products[4]);
+  const Vector yz = set(step.direction_products[5]);
+  return {
+      {hn::MulAdd(rest, set(step.direction_products[0]), a.cosine), hn::MulSub(rest, xy, zs), hn::MulAdd(rest, xz, ys)},
+      {hn::MulAdd(rest, xy, zs), hn::MulAdd(rest, set(step.direction_products[1]), a.cosine), hn::MulSub(rest, yz, xs)},
+      {hn::MulSub(rest, xz, ys), hn::MulAdd(rest, yz, xs),
+       hn::MulAdd(rest, set(step.direction_products[2]), a.cosine)}};
+}
+
+/// Sine and cosine of q + zero position from those of q.
+HWY_INLINE SineCosine motion_angle(const AxisStep& step, const SineCosine& q) {
+  if (step.zero_position == 0) return q;
+  const Vector s0 = set(step.zero_sine), c0 = set(step.zero_cosine);
+  return {hn::MulAdd(q.sine, c0, hn::Mul(q.cosine, s0)), hn::NegMulAdd(q.sine, s0, hn::Mul(q.cosine, c0))};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace abbe::chain
+HWY_AFTER_NAMESPACE();
+
+#endif  // per target
