@@ -1,5 +1,5 @@
-// abbe-mpi: the command `abbe` in several processes, which mpirun starts. Subcommands that share their work run in all of
-// them, others in the first one alone. The first one writes and prints.
+// abbe-mpi: the command `abbe` in several processes, which mpirun starts. Subcommands that share their work run in all
+// of them, others in the first one alone. The first one writes and prints.
 #include <malloc.h>
 #include <unistd.h>
 

@@ -9,7 +9,8 @@
 namespace abbe {
 namespace {
 
-// Measured on processors with AVX2 and with AVX-512, in products of the kernel of cross_products.h.
+// Relative to a product of two columns in registers: rough estimates, between what processors with AVX2 and with
+// AVX-512 take.
 constexpr double kFold = 1.3;        // a product of two carriers
 constexpr double kStore = 1;         // a result of it
 constexpr double kMultiply = 1.5;    // a product of two basis functions
