@@ -74,7 +74,6 @@ class CountedJob {
       : request_(request),
         scan_(scan),
         surface_(surface),
-        faces_(faces),
         question_{request.largest_mm, faces.face_of_triangle, request.page},
         job_(job),
         stamp_(file_stamp(request.scan_file)),
@@ -187,7 +186,6 @@ class CountedJob {
   const ScanDeviationsRequest& request_;
   const PointCloudOptions& scan_;
   const ClosestPointFinder& surface_;
-  const SurfaceFaces& faces_;
   PieceQuestion question_;
   const JobOptions& job_;
   FileStamp stamp_;
