@@ -33,7 +33,7 @@ TraceFile parse_trace(std::string_view text, const std::string& file, const Mach
       if (trace.time_s[row] >= trace.time_s[row - 1]) continue;
       throw InputError({file, csv_line(text, row), 0, table.columns[time].header},
                        fmt::format("{:.9g} s follows {:.9g} s", trace.time_s[row], trace.time_s[row - 1]),
-                       "rows in the order of time");
+                       "rows in chronological order");
     }
   }
   return trace;

@@ -60,7 +60,7 @@ TEST(PlannedTouches, RefuseALogThatIsNotTheirs) {
   std::string log = kLog;
   EXPECT_THAT(message_of_log(log + log), HasSubstr("log.txt:3: there are more touches"));
   EXPECT_THAT(message_of_log(log.substr(0, log.find('\n') + 1)), HasSubstr("1 touch is missing at its end"));
-  EXPECT_THAT(message_of_log(log.substr(log.find('\n') + 1)), HasSubstr("log.txt:1: axis C stands -120.0000 degrees"));
+  EXPECT_THAT(message_of_log(log.substr(log.find('\n') + 1)), HasSubstr("log.txt:1: axis C is -120.0000 degrees"));
   EXPECT_THAT(message_of_log("1 2 3\n"), HasSubstr("the line has 3 fields"));
   log.replace(0, 9, "-9.912000");
   log.replace(log.find("20.25"), 5, "22.25");
