@@ -80,7 +80,7 @@ TEST_F(VerifyCommand, BothTestPiecesAndUnseenPosesGetBetter) {
 TEST_F(VerifyCommand, WhatIsWantedAndNotReachedIsExitCodeOne) {
   const CommandResult result = verify({"--poses", "100", "--least-reduction", "1000"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
-  EXPECT_THAT(result.out, HasSubstr("LESS than the wanted 1000 times"));
+  EXPECT_THAT(result.out, HasSubstr("LESS than the required 1000 times"));
   EXPECT_EQ(verify({"--poses", "100", "--largest-ratio", "0.01"}).exit_code, ExitCode::computation_says_no);
 }
 
