@@ -312,7 +312,8 @@ struct ReadingStream::Implementation {
     for (const SelectedObservations& selected : problem.observations) {
       SetupSelection setup{selected.unknowns, selected.use, false, {}};
       const auto weighed = std::dynamic_pointer_cast<const WeighedObservations>(selected.observations);
-      if (weighed && (kind == SumKind::poses || !(weighed->weights().variance == ReadingVariance{}))) {
+      if (weighed) {
+        // Even with the variances as stated: these are summed as whole columns, where others may use factors.
         setup.weighed = true;
         setup.weights = weighed->weights();
         const bool counts = kind == SumKind::poses || setup.weights.variance.pose > 0;

@@ -24,7 +24,7 @@
 // It prints:
 //
 //   poses: mean 39.0 um before, 1.7 um after compensation
-//   23.1 times smaller: at least the wanted 10 times
+//   23.1 times smaller: at least the required 10 times
 //
 // Its page: verification_page.h. Method and figures: docs/verify.md.
 
