@@ -63,10 +63,9 @@ void add_compare_command(CommandLine& line) {
       "examples/compare/october.errors.toml --machine examples/machines/three-axis-mill.machine.toml --tolerance "
       "V_max_C_A_um=20 -o results/compare\n"
       "\n"
-      "Campaigns are given in chronological order. Each is compared with the first, and with the one before. Exit code "
-      "1 if\n"
-      "nothing can be compared, the significance of a change is not known, or a tolerance is exceeded. Method and\n"
-      "figures: docs/compare.md.");
+      "Campaigns are given in chronological order. Each is compared with the first, and with the one before. Exit\n"
+      "code 1 if nothing can be compared, the significance of a change is not known, or a tolerance is exceeded.\n"
+      "Method and figures: docs/compare.md.");
   app->add_input_file("campaigns", command->campaigns,
                       "Results folders of abbe run, or errors files (*.errors.toml); two or more")
       ->required();

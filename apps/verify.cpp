@@ -154,10 +154,9 @@ void add_verify_command(CommandLine& line) {
       "examples/verify/second-tracker.study.toml\n\n"
       "With --readings, the readings of a study replace the simulated truth: its set-ups are fitted to them,\n"
       "and what is left is compared with the uncertainties. The study states the machine.\n"
-      "Test pieces come last, each with the traces of both runs and its sizes as in abbe test-piece. A trace "
-      "is\n"
-      "a CSV of what the axes were commanded while the program ran, a row for each servo cycle or so: time_s, X_mm,\n"
-      "Y_mm, Z_mm, A_deg, C_deg. Method and figures: docs/verify.md.");
+      "Test pieces come last, each with the traces of both runs and its sizes as in abbe test-piece. A trace\n"
+      "is a CSV of what the axes were commanded while the program ran, a row for each servo cycle or so: time_s,\n"
+      "X_mm, Y_mm, Z_mm, A_deg, C_deg. Method and figures: docs/verify.md.");
   command->add_option("results", options.files.results,
                       "Results folder of abbe run, of a study with simulated readings");
   add_states(*command, options.files.states);

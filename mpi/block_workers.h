@@ -25,7 +25,7 @@ class BlockWorkers {
   void add(std::size_t block);
   /// Blocks that were added and that no thread has begun.
   std::size_t waiting() const;
-  /// Whether no block was added that finished() has not given yet, so that there is nothing to wait for.
+  /// True if finished() has returned all blocks that were added, so that there is nothing to wait for.
   bool is_idle() const;
   /// Blocks that were finished since the last call; waits for one, but not longer. Rethrows what a block has thrown.
   std::vector<std::size_t> finished(std::chrono::microseconds wait);
@@ -38,7 +38,7 @@ class BlockWorkers {
   std::condition_variable added_, done_;
   std::deque<std::size_t> blocks_;
   std::vector<std::size_t> finished_;
-  std::size_t unfinished_ = 0;  // blocks that were added and that finished() has not given yet
+  std::size_t unfinished_ = 0;  // blocks added that finished() has not returned yet
   std::exception_ptr failure_;
   bool ends_ = false;
   std::vector<std::jthread> threads_;

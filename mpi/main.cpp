@@ -41,7 +41,7 @@ class KeptMessages {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Messages and blocks come and go: their memory is kept, or else the kernel would clear new pages for each of them.
+  // Messages and blocks come and go. Freed memory is kept, so that the kernel need not clear new pages for each.
   ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
   ::mallopt(M_TRIM_THRESHOLD, 256 << 20);
   abbe::MpiGroup group(&argc, &argv);

@@ -29,7 +29,7 @@ class FirstHasEnded : public std::runtime_error {
 }  // namespace
 
 MpiGroup::MpiGroup(int* argc, char*** argv) {
-  // A sleep of a process that waits ends 50 us late by default, which is longer than some messages take.
+  // By default the kernel ends a sleep up to 50 us late, which is longer than some messages take.
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0, 0, 0);
   int level = 0;
   MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);

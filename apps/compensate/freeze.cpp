@@ -70,19 +70,15 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
   Subcommand* command = compensate.add_subcommand(
       "freeze", "Write the machine and its errors to one file that a controller uses in real time");
   command->footer(
-      "The file is for the C interface abbe/runtime/abbe_runtime.h and for the LinuxCNC module (docs/runtime.md). It "
-      "is\n"
-      "tested at thousands of poses before it is written; the printed figures come from these tests. It does not "
-      "contain\n"
-      "reversal values: the lines for LinuxCNC's own BACKLASH are printed instead. Errors that depend on states\n"
-      "(temperatures, loads) are compensated with values that the controller gives in every cycle.\n\n"
+      "The file is for the C interface abbe/runtime/abbe_runtime.h and for the LinuxCNC module (docs/runtime.md). It\n"
+      "is tested at thousands of poses before it is written; the printed figures come from these tests. It does not\n"
+      "contain reversal values: the lines for LinuxCNC's own BACKLASH are printed instead. Errors that depend on\n"
+      "states (temperatures, loads) are compensated with values that the controller gives in every cycle.\n\n"
       "Example:\n"
       "  abbe compensate freeze --machine examples/machines/trunnion-mill.machine.toml --errors "
-      "examples/trunnion/table.errors.toml -o "
-      "mill.abbec\n"
+      "examples/trunnion/table.errors.toml -o mill.abbec\n"
       "  abbe compensate freeze --machine examples/machines/trunnion-mill.machine.toml --errors "
-      "examples/trunnion/table.errors.toml -o "
-      "long-tools.abbec --tool-length-mm 60 220 --limit-um 500");
+      "examples/trunnion/table.errors.toml -o long-tools.abbec --tool-length-mm 60 220 --limit-um 500");
   add_machine_and_errors(*command, arguments->machine, arguments->errors);
   command->add_output_file("-o,--output", arguments->output, "File to write (*.abbec)", &arguments->dry_run);
   command->add_flag("--dry-run", arguments->dry_run,

@@ -96,9 +96,8 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
       "--workpiece-temperature-degC 26 --u-workpiece-temperature-K 0.5 -o warm.ngc\n\n"
       "X, Y and Z are axis positions unless G43.4 or --tool-centre says otherwise. The tool is that of the machine\n"
       "file, lengthened by the tool length offset in force. An axis with a reversal value takes up its play by a\n"
-      "motion of its own wherever it reverses. Leave the control's own backlash compensation as it was when the "
-      "errors\n"
-      "were measured. See docs/programs.md.");
+      "motion of its own wherever it reverses. Leave the control's own backlash compensation as it was when the\n"
+      "errors were measured. See docs/programs.md.");
   command->add_input_file("program", options->program, "NC program (RS274/NGC, ISO 6983)")->required();
   add_machine(*command, options->machine)->required();
   add_errors(*command, options->errors)->required();
@@ -116,8 +115,7 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
   command->add_option(
       "--reversal-dead-band-um", options->dead_band_um,
       "An axis with a reversal value counts as reversed once it has come back by more than this. The default, an "
-      "eighth "
-      "of the tolerance, is part of the tolerance; a value given here is added to it. For a rotary axis it is a "
+      "eighth of the tolerance, is part of the tolerance; a value given here is added to it. For a rotary axis it is a "
       "distance at the longest lever of the tool in force");
   command->add_option("--limit-um", options->limit_um,
                       "Refuse corrections of the functional point above this, um; nothing is written then");

@@ -100,10 +100,9 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
   auto options = std::make_shared<PlanOptions>();
   Subcommand* command = scan.add_subcommand("plan", "Plan paths of a displacement probe over all faces of a part");
   command->footer(
-      "Faces end where triangles meet at an edge. A flat face is scanned as a raster with one direction of the beam. "
-      "A\n"
-      "face of revolution is scanned on circles, if a rotary axis can be brought to its axis. All others are scanned\n"
-      "along their normals. Exit code 1: not everything is reached.\n\n"
+      "Faces end where triangles meet at an edge. A flat face is scanned as a raster with one direction of the beam.\n"
+      "A face of revolution is scanned on circles, if a rotary axis can be brought to its axis. All others are\n"
+      "scanned along their normals. Exit code 1: not everything is reached.\n\n"
       "Examples:\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml -o "
       "path.csv "

@@ -64,16 +64,14 @@ void add_scan_points(Subcommand& scan, CommandLine& line) {
   Subcommand* command =
       scan.add_subcommand("points", "Turn axis positions and indications of a probe into points of the part");
   command->footer(
-      "Readings: CSV with one column per axis (X_mm, C_deg) and the indication (indication_mm, _um), positive away "
-      "from\n"
-      "the probe. Points are in the workpiece frame, in the order of the readings. Files of any length: neither the\n"
-      "readings nor the points are kept in memory.\n\n"
+      "Readings: CSV with one column per axis (X_mm, C_deg) and the indication (indication_mm, _um), positive away\n"
+      "from the probe. Points are in the workpiece frame, in the order of the readings. Files of any length: neither\n"
+      "the readings nor the points are kept in memory.\n\n"
       "Example:\n"
-      "  abbe scan points examples/cradle_scanner/readings.csv --machine examples/machines/liu-scanner.machine.toml -o "
-      "points.csv\n"
       "  abbe scan points examples/cradle_scanner/readings.csv --machine examples/machines/liu-scanner.machine.toml "
-      "--errors "
-      "examples/cradle_scanner/stages.errors.toml --indication-range-mm -0.2 0.2 -o points.ply");
+      "-o points.csv\n"
+      "  abbe scan points examples/cradle_scanner/readings.csv --machine examples/machines/liu-scanner.machine.toml "
+      "--errors examples/cradle_scanner/stages.errors.toml --indication-range-mm -0.2 0.2 -o points.ply");
   command->add_input_file("readings", options->request.readings, "CSV of axis positions and indications")->required();
   command->take_from_arguments({add_machine(*command, options->machine)->required()});
   add_errors(*command, options->request.errors_file,

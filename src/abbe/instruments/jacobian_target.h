@@ -11,7 +11,7 @@
 
 namespace abbe {
 
-/// Where an evaluation writes derivatives: whole columns, or the factors of columns.
+/// Where an evaluation writes derivatives (per mm or rad): whole columns, or the factors of columns.
 struct JacobianTarget {
   double* columns = nullptr;  ///< whole ones or carriers, columns[column * stride + row * count + k]; null: not wanted
   std::size_t stride = 0;
@@ -23,7 +23,7 @@ struct JacobianTarget {
   /// Number of the column that holds what belongs to column j of the Jacobian.
   std::size_t place(std::size_t j) const { return form == nullptr ? j : form->columns[j].carrier; }
   double* column(std::size_t j) const { return columns + place(j) * stride; }
-  /// Columns that are written for so many columns of the Jacobian.
+  /// Number of columns that are written for a Jacobian of that many columns.
   std::size_t written(std::size_t jacobian_columns) const {
     return form == nullptr ? jacobian_columns : form->carriers();
   }

@@ -5,7 +5,7 @@
 
 namespace abbe {
 
-/// shortest_text() behind a text that is there already, which is quicker.
+/// Appends shortest_text() to a text, without a string of its own.
 void append_shortest_text(double value, int decimal_shift, std::string& out);
 
 }  // namespace abbe

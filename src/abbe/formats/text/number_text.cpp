@@ -124,7 +124,7 @@ void append_shortest_text(double value, int decimal_shift, std::string& out) {
     return;
   }
   std::array<char, 32> digits;  // d.ddde+dd
-  // Where the standard library writes the same text, it is quickest.
+  // In this range the standard library writes the same text, and is faster.
   if (decimal_shift == 0 && std::abs(value) >= 1e-4 && std::abs(value) < 1e15) {
     const auto plain =
         std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(value), std::chars_format::fixed);
@@ -140,7 +140,7 @@ void append_shortest_text(double value, int decimal_shift, std::string& out) {
   if (*first == '+') ++first;
   std::from_chars(first, text.data() + text.size(), exponent);
   exponent += decimal_shift;
-  // The digits without the point, which is the second character of several.
+  // The digits without the point, which is the second character if there are several digits.
   if (mark > 1) digits[1] = digits[0];
   const std::string_view all = mark > 1 ? text.substr(1, mark - 1) : text.substr(0, 1);
   const long count = static_cast<long>(all.size());

@@ -86,7 +86,8 @@ struct Drawn {
   Eigen::Index from = 0, to = 0;
 };
 
-/// Poses of a pair, and those that are worth adding: number, score, and above what it is given up.
+/// Poses of a pair, and those worth adding: number, score, and the least kept score above which the pose was given
+/// up.
 struct Tried {
   static constexpr std::size_t kNumbers = 3;
 

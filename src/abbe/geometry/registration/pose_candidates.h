@@ -27,7 +27,7 @@ class PoseCandidates {
   PoseCandidates(const DistanceGrid& grid, const Eigen::Matrix3Xd& scan, double reach, double diameter,
                  std::size_t most, std::mt19937_64& generator);
 
-  /// Score of a pose, and above which least score of those that are kept it is given up half way.
+  /// Score of a pose, and the least kept score above which it is given up before all points are counted.
   struct Score {
     double score = 0, given_up_above = 0;
   };

@@ -39,7 +39,7 @@ std::vector<std::size_t> joined(const std::vector<std::size_t>& a, const std::ve
   return all;
 }
 
-/// What joining groups i and j saves; negative: costs.
+/// Operations per reading that joining groups i and j saves; negative if it costs more.
 double saving(const std::vector<CarrierGroup>& groups, std::size_t i, std::size_t j, const CarrierGroup& both,
               std::size_t rows) {
   double saved = operations_within(groups[i], rows) + operations_within(groups[j], rows) +

@@ -7,7 +7,7 @@
 
 namespace abbe {
 
-/// Carriers and basis functions whose products are columns of a Jacobian; not all of them need be.
+/// Carriers and basis functions whose products are columns of a Jacobian. Some of the products may not be columns.
 struct CarrierGroup {
   std::vector<std::size_t> carriers;  ///< ascending; FactoredColumns::carriers(): the residuals
   std::vector<std::size_t> bases;     ///< ascending; FactoredColumns::bases(): the basis function 1

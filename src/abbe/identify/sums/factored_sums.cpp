@@ -17,7 +17,8 @@ std::size_t triangle_place(std::size_t n, std::size_t i, std::size_t j) {
   return i * n - i * (i + 1) / 2 + j;
 }
 
-/// Carriers of one group that are multiplied at a time: their products stay in the first-level cache, and fill tiles.
+/// Number of carriers of one group that are multiplied together, so that their products fill tiles and stay in the
+/// first-level cache.
 std::size_t carriers_at_once(std::size_t others) { return others <= 3 ? 8 : others <= 8 ? 4 : others <= 16 ? 2 : 1; }
 
 }  // namespace
@@ -110,7 +111,7 @@ void FactoredSums::add(bool normal, const double* carriers, std::size_t stride, 
     }
     fold_products(left.data(), part.begin, part.end, right.data(), right.size(), same, rows_, count, w_columns,
                   kStride);
-    // What stands after the readings is no number of theirs.
+    // Whatever was written after the last reading must not count.
     if (length > count)
       for (std::size_t w = 0; w < part.w; ++w)
         std::fill(w_columns + w * kStride + count, w_columns + w * kStride + length, 0.0);

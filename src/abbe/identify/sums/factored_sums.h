@@ -24,7 +24,7 @@ class FactoredSums {
   FactoredSums(FactoredColumns form, std::size_t rows);
 
   const FactoredColumns& form() const { return form_; }
-  /// True if this takes less time than the products of whole columns; by the layout alone.
+  /// True if this takes less time than the products of whole columns. Depends on the layout alone.
   bool is_quicker() const { return quicker_; }
 
   /// Numbers of working memory for add().

@@ -27,7 +27,7 @@ namespace {
 /// Points that are read and searched together: they stay in the cache of a processor.
 constexpr std::size_t kPointsTogether = 8192;
 
-/// Columns of numbers that grow, and may need fewer than were thought in the end.
+/// A matrix of three rows that grows by columns. The expected number of columns is only an estimate.
 class GrowingColumns {
  public:
   explicit GrowingColumns(Eigen::Index about) : columns_(3, about) {}
@@ -166,7 +166,8 @@ class CountedJob {
     for (const std::uint32_t number : own.normal_of) {
       normal = std::copy_n(own.normals.begin() + 3 * static_cast<std::ptrdiff_t>(number), 3, normal);
     }
-    // The other pieces have about as much text, or else the text would be copied whenever it has doubled.
+    // Reserved from the first piece, since the others have about as much text; otherwise the text would be copied
+    // each time it doubles.
     if (result_.csv.empty() && !own.rows.empty()) {
       result_.csv.reserve(own.rows.size() / n * blocks_.about_points() / 16 * 17);
       result_.csv = kDeviationCsvHeader;
