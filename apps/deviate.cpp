@@ -1,3 +1,8 @@
+#include <optional>
+#include <utility>
+
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/text_on_disk.h"
 #include "abbe/study/scans/streamed_deviations.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
@@ -34,12 +39,20 @@ int run_deviate(const DeviateCommand& command, ProcessGroup* processes) {
   request.tolerances = command.options.tolerances;
   request.page = !command.options.output.empty();
   SharedWork work(processes, command.options.output, tell_sentence);
+  // Written while points are compared: it is long.
+  std::optional<TextOnDisk> csv;
+  if (work.is_first() && request.page) {
+    csv.emplace(command.options.output);
+    request.take_csv = [&csv](std::string text) { text.empty() ? csv->clear() : csv->append(std::move(text)); };
+  }
   ScanDeviations result = deviations_of_file(std::move(request), command.files.scan_options(), command.streaming,
                                              work.job(Progress("comparing").callback()));
   if (!work.is_first()) return kDone;
   std::vector<std::pair<std::string, std::string>> files;
   if (!command.options.output.empty()) files = taken_deviation_files(result);
-  const int code = finish_evaluation(result.report, command.options, files);
+  const int code = finish_evaluation(result.report, command.options, files, [&](ResultsFolder& results) {
+    if (result.csv_was_taken) results.write("deviation.csv", std::move(*csv));
+  });
   work.done();
   return result.has_points() && !result.elsewhere ? code : static_cast<int>(kNegative);
 }

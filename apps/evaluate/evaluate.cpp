@@ -37,11 +37,13 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
 }
 
 int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& options,
-                      const std::vector<std::pair<std::string, std::string>>& files) {
+                      const std::vector<std::pair<std::string, std::string>>& files,
+                      const std::function<void(ResultsFolder&)>& write_more) {
   if (!options.output.empty()) {
     ResultsFolder results(options.output);
     for (const auto& [name, contents] : evaluation_files(report)) results.write(name, contents);
     for (const auto& [name, contents] : files) results.write(name, contents);
+    if (write_more) write_more(results);
     results.commit();
   }
   if (options.json) {

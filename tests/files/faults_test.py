@@ -115,11 +115,15 @@ def fit(points, output):
 
 bore = EXAMPLES / "fit" / "bore.csv"
 FOLDER = Case("results", [*fit(bore, "results")], [*fit(bore, "results"), "--method", "minimum-zone"], True)
+scan = EXAMPLES / "scan"
+deviate = ["deviate", str(scan / "bracket-scan.csv"), str(scan / "bracket.stl"), "--transform",
+           str(scan / "bracket-transform.csv"), "-o", "results", "--largest-mm"]
+LONG_TEXT = Case("results", [*deviate, "0.3"], [*deviate, "0.2"], True)
 piece = ["test-piece", "cone-frustum", "-o", "piece.csv", "--chord-um"]
 FILE = Case("piece.csv", [*piece, "50"], [*piece, "20", "--force"], False)
 NEW_FILE = Case("piece.csv", None, [*piece, "20"], False)
 total = 0
-for case in (FOLDER, FILE, NEW_FILE):
+for case in (FOLDER, LONG_TEXT, FILE, NEW_FILE):
     for kind in KINDS:
         for n in range(1, case.calls + 1):
             case.with_fault(f"{n}:{kind}")

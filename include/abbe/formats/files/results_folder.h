@@ -10,6 +10,7 @@
 
 namespace abbe {
 
+class TextOnDisk;
 class UnfinishedOutput;
 
 /// Whether results may be written under a name: a new or an empty folder, or one that holds results already, as the
@@ -38,11 +39,14 @@ class ResultsFolder {
   /// Writes and flushes one file; makes the folders in `relative`.
   /// @throws InputError if it cannot be written whole, or the name leads out of the folder
   void write(const std::filesystem::path& relative, std::string_view contents);
+  /// The same of a text that was written to the disk while it was made.
+  void write(const std::filesystem::path& relative, TextOnDisk text);
 
   /// Makes the result visible under its name. @throws InputError; the older result is then still there
   void commit();
 
  private:
+  std::filesystem::path place_of(const std::filesystem::path& relative);
   void refuse_to_lose_files() const;
   void put_in_place();
 

@@ -18,6 +18,9 @@ std::filesystem::path resolved_output(const std::filesystem::path& name);
 /// instead of being written to it
 std::filesystem::path file_to_write(const std::filesystem::path& name);
 
+/// The folder in which a file or folder is made; of those that are not there yet, the one in which they are made.
+std::filesystem::path existing_folder_above(const std::filesystem::path& path);
+
 /// For commands before they begin to compute: whether a new file or folder can be made in a folder. What only shows
 /// when it is made, such as a full disk, is left to the writer, whose message this is.
 /// @param folder  resolved
@@ -40,6 +43,10 @@ class Descriptor {
  private:
   int number_;
 };
+
+/// A file in a folder that has no name, so that a killed process leaves nothing behind. Not open where the file system
+/// has no such files.
+Descriptor nameless_file(const std::filesystem::path& folder);
 
 inline constexpr std::string_view kUnfinished = ".abbe-unfinished";  ///< what is being written
 inline constexpr std::string_view kOlder = ".abbe-older";            ///< a folder of results that was moved aside

@@ -27,6 +27,7 @@
 //
 // The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/registration.md.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -67,14 +68,18 @@ struct ScanDeviationsRequest {
   std::vector<std::string> tolerances;  ///< --tolerance: "maximum_um=50", as apply_tolerances() takes them
   int threads = 0;                      ///< 0: all; no result depends on it
   bool page = false;                    ///< the report is to have the deviations on the part, for its page
+  /// deviations_of_file(): takes deviation.csv bit by bit while points are compared, if it is made then. An empty text
+  /// says that it begins again.
+  std::function<void(std::string text)> take_csv;
 };
 
 /// Deviations of a scan from its part, with their report. They hold no reference to the request.
 struct ScanDeviations {
-  ScanComparison compared;  ///< of a scan that was read in blocks: counted points are those that are shown
-  std::string csv;          ///< deviation.csv, where it was made while points were compared; else empty
-  EvaluationReport report;  ///< with the tolerances of the request
-  double colour_mm = 0;     ///< of the full colour
+  ScanComparison compared;     ///< of a scan that was read in blocks: counted points are those that are shown
+  std::string csv;             ///< deviation.csv, where it was made while points were compared; else empty
+  bool csv_was_taken = false;  ///< by `take_csv` of the request
+  EvaluationReport report;     ///< with the tolerances of the request
+  double colour_mm = 0;        ///< of the full colour
   /// Half of the points that count lie farther from the part than a tenth of its diagonal: the scan is not where the
   /// part is, and its deviations say nothing about the part. A note of the report says so.
   bool elsewhere = false;
@@ -91,7 +96,7 @@ struct ScanDeviations {
 /// @throws Stopped
 ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOptions& job = {});
 
-/// Files of the points that count, name and contents: deviation.csv and deviation.ply (coloured).
+/// Files of the points that count, name and contents: deviation.csv, unless it was taken, and deviation.ply (coloured).
 std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result);
 /// The same of a result that is not needed any more: large texts are not copied.
 std::vector<std::pair<std::string, std::string>> taken_deviation_files(ScanDeviations& result);

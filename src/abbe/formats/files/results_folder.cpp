@@ -17,6 +17,7 @@
 #include "abbe/formats/files/remove_unfinished.h"
 #include "abbe/formats/files/results_marker.h"
 #include "abbe/formats/files/streamed_file.h"
+#include "abbe/formats/files/text_on_disk.h"
 #include "abbe/formats/files/unfinished_output.h"
 #include "abbe/formats/files/write_error.h"
 #include "abbe/formats/text/input_error.h"
@@ -86,12 +87,7 @@ void check_results_folder(const fs::path& name) {
   const fs::path path = resolved_output(name);
   check_folder(name, path);
   // The folders on its way are made with it.
-  fs::path made_in = path.parent_path();
-  std::error_code ignored;
-  while (made_in.has_relative_path() && !fs::exists(fs::symlink_status(made_in, ignored))) {
-    made_in = made_in.parent_path();
-  }
-  check_folder_to_write_in(made_in, name);
+  check_folder_to_write_in(existing_folder_above(path), name);
 }
 
 ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)), path_(resolved_output(name_)) {
@@ -107,7 +103,8 @@ ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)), path_(reso
 
 ResultsFolder::~ResultsFolder() = default;
 
-void ResultsFolder::write(const fs::path& relative, std::string_view contents) {
+/// Where a new file of the folder is written; the folders on its way are made.
+fs::path ResultsFolder::place_of(const fs::path& relative) {
   const fs::path plain = relative.lexically_normal(), called = name_ / plain;
   if (plain.empty() || plain.is_absolute() || *plain.begin() == ".." || plain.filename().empty()) {
     throw InputError({called.string(), 0, 0, ""}, "does not lie in the folder of the results", "a name within it");
@@ -122,7 +119,15 @@ void ResultsFolder::write(const fs::path& relative, std::string_view contents) {
     fs::create_directories(path.parent_path(), error);
   }
   if (error) fail_to_write(called.parent_path(), error.value());
-  write_and_flush(path, contents, called);
+  return path;
+}
+
+void ResultsFolder::write(const fs::path& relative, std::string_view contents) {
+  write_and_flush(place_of(relative), contents, name_ / relative.lexically_normal());
+}
+
+void ResultsFolder::write(const fs::path& relative, TextOnDisk text) {
+  text.put_at(place_of(relative), name_ / relative.lexically_normal());
 }
 
 void ResultsFolder::refuse_to_lose_files() const {

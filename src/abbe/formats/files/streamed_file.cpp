@@ -15,20 +15,8 @@
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
-namespace {
 
 namespace fs = std::filesystem;
-
-/// A file without a name, or none where the file system has no such files.
-Descriptor nameless_file(const fs::path& folder) {
-#ifdef O_TMPFILE
-  return Descriptor(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
-#else
-  return Descriptor();
-#endif
-}
-
-}  // namespace
 
 StreamedFile::StreamedFile(const fs::path& name) : name_(name), path_(file_to_write(name)) {
   refuse_input_as_output(path_);

@@ -63,6 +63,13 @@ fs::path file_to_write(const fs::path& name) {
   return resolved_output(name);
 }
 
+fs::path existing_folder_above(const fs::path& path) {
+  fs::path folder = path.parent_path();
+  std::error_code ignored;
+  while (folder.has_relative_path() && !fs::exists(fs::symlink_status(folder, ignored))) folder = folder.parent_path();
+  return folder;
+}
+
 void check_folder_to_write_in(const fs::path& folder, const fs::path& called) {
   struct stat status {};
   if (::stat(folder.c_str(), &status) != 0) fail_to_write(called, errno);
@@ -81,6 +88,14 @@ Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
 int Descriptor::close() {
   const int number = std::exchange(number_, -1);
   return number < 0 || ::close(number) == 0 ? 0 : errno;
+}
+
+Descriptor nameless_file(const fs::path& folder) {
+#ifdef O_TMPFILE
+  return Descriptor(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
+#else
+  return Descriptor();
+#endif
 }
 
 fs::path name_beside(const fs::path& output, std::string_view ending) {

@@ -145,7 +145,7 @@ class CountedJob {
   void note(std::size_t piece) {
     is_there_[piece] = 1;
     for (; added_ < found_.size() && is_there_[added_] != 0; ++added_) {
-      const PieceDeviations own = std::exchange(found_[added_], {});
+      PieceDeviations own = std::exchange(found_[added_], {});
       result_.points += own.counts[0];
       result_.scan.left_out += own.counts[1];
       result_.beyond_border += own.counts[2];
@@ -153,6 +153,7 @@ class CountedJob {
       result_.all.insert(result_.all.end(), own.deviation_mm.begin(), own.deviation_mm.end());
       for (std::size_t i = 0; i < own.faces.size(); ++i) result_.faces[own.faces[i]].push_back(own.deviation_mm[i]);
       if (question_.with_points) add_points(own);
+      if (question_.with_points) add_rows(std::move(own.rows), own.deviation_mm.size());
     }
     read_bytes_ += pieces_.end(piece) - pieces_.begin(piece);
     if (job_.progress) job_.progress(read_bytes_, blocks_.end() - blocks_.begin());
@@ -166,13 +167,23 @@ class CountedJob {
     for (const std::uint32_t number : own.normal_of) {
       normal = std::copy_n(own.normals.begin() + 3 * static_cast<std::ptrdiff_t>(number), 3, normal);
     }
-    // Reserved from the first piece, since the others have about as much text; otherwise the text would be copied
-    // each time it doubles.
-    if (result_.csv.empty() && !own.rows.empty()) {
-      result_.csv.reserve(own.rows.size() / n * blocks_.about_points() / 16 * 17);
-      result_.csv = kDeviationCsvHeader;
+  }
+
+  void add_rows(std::string rows, std::size_t n) {
+    if (rows.empty()) return;
+    if (request_.take_csv) {
+      if (!has_rows_) request_.take_csv(std::string(kDeviationCsvHeader));
+      request_.take_csv(std::move(rows));
+    } else {
+      // Reserved from the first piece, since the others have about as much text; otherwise the text would be copied
+      // each time it doubles.
+      if (!has_rows_) {
+        result_.csv.reserve(rows.size() / n * blocks_.about_points() / 16 * 17);
+        result_.csv = kDeviationCsvHeader;
+      }
+      result_.csv += rows;
     }
-    result_.csv += own.rows;
+    has_rows_ = true;
   }
 
   void describe_scan() {
@@ -198,6 +209,7 @@ class CountedJob {
   CountedDeviations result_;
   GrowingColumns points_, feet_, normals_;
   std::size_t added_ = 0, read_bytes_ = 0;
+  bool has_rows_ = false;
 };
 
 }  // namespace

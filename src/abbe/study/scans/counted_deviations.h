@@ -23,7 +23,7 @@ struct CountedDeviations {
   std::vector<std::vector<double>> faces;  ///< [faces] of the points nearest to each
   // If the request wants a page:
   Eigen::Matrix3Xd points_mm, feet_mm, normals;  ///< [3, n] points, their closest points on the part, and its normals
-  std::string csv;                               ///< deviation.csv
+  std::string csv;                               ///< deviation.csv, unless the request takes it
 };
 
 /// Compares the scan of a request with its part while it is read, piece by piece: pieces are numbered work, so several

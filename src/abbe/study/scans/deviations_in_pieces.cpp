@@ -83,6 +83,7 @@ ScanDeviations compared_in_pieces(const ScanDeviationsRequest& request, const Po
   result.report.page = page_of(request, *counted, result);
   result.compared.counted_points = std::move(counted->points_mm);
   result.csv = std::move(counted->csv);
+  result.csv_was_taken = request.take_csv && result.has_points();
   return result;
 }
 
@@ -105,6 +106,7 @@ std::optional<ScanDeviations> deviations_in_pieces(const ScanDeviationsRequest& 
     // A table of another form, perhaps; or the reader of whole files says what is wrong. Once several processes have
     // begun, another one may have found nothing wrong.
     if (has_begun && job.in_step.processes > 1) throw;
+    if (request.take_csv) request.take_csv("");
     return std::nullopt;
   }
 }

@@ -125,6 +125,41 @@ TEST_F(DeviationsInPieces, HaveTheSameFacesAndFilesThatAreTaken) {
   EXPECT_EQ(taken_deviation_files(result), copied);
 }
 
+TEST_F(DeviationsInPieces, HaveTheSameRowsWhereTheyAreTakenMeanwhile) {
+  write("scan.ply", ply_bytes({.points = cloud_.points}));
+  std::string taken;
+  int times = 0;
+  request_.take_csv = [&](const std::string& text) {
+    taken += text;
+    ++times;
+  };
+  for (const bool backwards : {false, true}) {
+    taken.clear();
+    JobOptions job;
+    if (backwards) job.work = work_backwards;
+    ScanDeviations result = deviations_of_file(request_, {}, {}, job);
+    EXPECT_TRUE(result.csv_was_taken);
+    const auto files = taken_deviation_files(result);
+    ASSERT_EQ(files.size(), 1U);
+    request_.scan = read_point_cloud(request_.scan_file);
+    const auto all = deviation_files(find_deviations(request_));
+    ASSERT_EQ(all.size(), 2U);
+    EXPECT_EQ(taken, all[0].second);
+    EXPECT_EQ(files[0], all[1]);
+  }
+  EXPECT_GT(times, 10);
+}
+
+TEST_F(DeviationsInPieces, RowsThatWereTakenInVainAreTakenBack) {
+  // The last piece is no table of points; a reader of whole files says so.
+  write("scan.csv", point_cloud_csv(cloud_) + "1,2,three\n");
+  std::vector<std::string> taken;
+  request_.take_csv = [&](const std::string& text) { taken.push_back(text); };
+  EXPECT_THROW(deviations_of_file(request_, {}), InputError);
+  ASSERT_GT(taken.size(), 1U);
+  EXPECT_EQ(taken.back(), "");
+}
+
 TEST_F(DeviationsInPieces, OfPointsThatAllAreTooFarAreThoseOfTheScanAsAWhole) {
   request_.largest_mm = 1e-9;
   write("scan.ply", ply_bytes({.points = cloud_.points}));

@@ -112,9 +112,14 @@ std::string coloured_points(const ScanDeviations& result) {
 
 std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result) {
   const ScanComparison& compared = result.compared;
-  return {{"deviation.csv",
-           result.csv.empty() ? point_cloud_csv({compared.counted_points, {}}, compared.counted_mm) : result.csv},
-          {"deviation.ply", coloured_points(result)}};
+  std::vector<std::pair<std::string, std::string>> files;
+  if (!result.csv_was_taken) {
+    files.emplace_back("deviation.csv", result.csv.empty()
+                                            ? point_cloud_csv({compared.counted_points, {}}, compared.counted_mm)
+                                            : result.csv);
+  }
+  files.emplace_back("deviation.ply", coloured_points(result));
+  return files;
 }
 
 std::vector<std::pair<std::string, std::string>> taken_deviation_files(ScanDeviations& result) {

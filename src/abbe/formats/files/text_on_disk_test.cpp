@@ -1,0 +1,107 @@
+#include "abbe/formats/files/text_on_disk.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "abbe/formats/files/empty_folder_for_test.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/text/input_error.h"
+
+namespace abbe {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_no_entry(const fs::path& folder) { return fs::directory_iterator(folder) == fs::directory_iterator(); }
+
+TEST(TextOnDisk, GetsANameWithItsResults) {
+  const fs::path folder = test::empty_folder("abbe_text_on_disk");
+  TextOnDisk text(folder / "new/results");
+  EXPECT_TRUE(text.is_empty());
+  std::string expected;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string line = "line " + std::to_string(i) + std::string(1000, '.') + "\n";
+    expected += line;
+    text.append(line);
+  }
+  EXPECT_FALSE(text.is_empty());
+  EXPECT_TRUE(has_no_entry(folder)) << "it has no name yet";
+  ResultsFolder results(folder / "new/results");
+  results.write("a.txt", "one");
+  results.write("tables/b.txt", std::move(text));
+  EXPECT_FALSE(fs::exists(folder / "new/results"));
+  results.commit();
+  EXPECT_EQ(read_text_file(folder / "new/results/tables/b.txt"), expected);
+  EXPECT_EQ(fs::status(folder / "new/results/tables/b.txt").permissions(),
+            fs::status(folder / "new/results/a.txt").permissions());
+}
+
+TEST(TextOnDisk, BeginsAgain) {
+  const fs::path folder = test::empty_folder("abbe_text_again");
+  TextOnDisk text(folder / "results");
+  text.append("what does not count");
+  text.clear();
+  EXPECT_TRUE(text.is_empty());
+  text.append("what ");
+  text.append("counts");
+  ResultsFolder results(folder / "results");
+  results.write("a.txt", std::move(text));
+  results.commit();
+  EXPECT_EQ(read_text_file(folder / "results/a.txt"), "what counts");
+}
+
+TEST(TextOnDisk, LeavesNothingIfItGetsNoName) {
+  const fs::path folder = test::empty_folder("abbe_text_without_name");
+  {
+    TextOnDisk text(folder / "results");
+    text.append("text");
+  }
+  EXPECT_TRUE(has_no_entry(folder));
+}
+
+TEST(TextOnDisk, IsOnTheSameDiskAsItsResultsOrCopied) {
+  const fs::path folder = test::empty_folder("abbe_text_elsewhere");
+  TextOnDisk text("/dev/shm/results");
+  text.append("text");
+  ResultsFolder results(folder / "results");
+  results.write("a.txt", std::move(text));
+  results.commit();
+  EXPECT_EQ(read_text_file(folder / "results/a.txt"), "text");
+}
+
+TEST(TextOnDisk, ADiskThatIsFullIsSaidWithTheNameOfTheFile) {
+  const fs::path folder = test::empty_folder("abbe_text_full");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const rlimit limit{10000, 10000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, SIG_IGN);
+    TextOnDisk text(folder / "results");
+    for (int i = 0; i < 100; ++i) text.append(std::string(1000, '.'));
+    int code = 1;
+    try {
+      ResultsFolder results(folder / "results");
+      results.write("a.txt", std::move(text));
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      code = message.find("a.txt") != std::string::npos && message.find("File too large") != std::string::npos ? 0 : 2;
+    }
+    ::_exit(code);
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(has_no_entry(folder));
+}
+
+}  // namespace
+}  // namespace abbe
