@@ -57,7 +57,7 @@ extern "C" {
 
 enum {
   ABBE_RUNTIME_AXES = 16,       /**< no machine has more axes */
-  ABBE_RUNTIME_FORMAT = 3,      /**< newest version of the file format; without states a file has version 2 */
+  ABBE_RUNTIME_FORMAT = 5,      /**< newest version of the file format; files that need less have 2 to 4 */
   ABBE_RUNTIME_ITERATIONS = 40, /**< no call takes more */
   ABBE_RUNTIME_TEXT = 64
 };

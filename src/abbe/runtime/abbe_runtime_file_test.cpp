@@ -104,7 +104,7 @@ TEST(RuntimeFile, AForeignOneIsRefusedAndTheReasonSaid) {
   std::swap(other[9], other[10]);
   EXPECT_EQ(load(other, &text), ABBE_FILE_ORDER);
   other = sound;
-  other[frozen::kFormatAt] = 9;
+  other[frozen::kFormatAt] = ABBE_RUNTIME_FORMAT + 1;
   EXPECT_EQ(load(other, &text), ABBE_FILE_VERSION);
   EXPECT_NE(text.find("freeze the compensation again"), std::string::npos);
   other = sound;

@@ -15,6 +15,9 @@
 #include "abbe/runtime/frozen_values.h"
 
 namespace abbe {
+
+static_assert(ABBE_RUNTIME_FORMAT == frozen::kFormatWithStates + frozen::kFormatsForCouplings);
+
 namespace frozen {
 namespace {
 
