@@ -13,13 +13,16 @@ namespace abbe {
 Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> deviation_colours(std::span<const double> deviation_mm,
                                                                  double range_mm) {
   // Equal in lightness at both ends, so that a grey print shows amounts.
-  const Eigen::Vector3d inside(33, 102, 172), zero(225, 225, 225), outside(178, 24, 43);
+  constexpr std::array<double, 3> kInside = {33, 102, 172}, kOutside = {178, 24, 43};
+  constexpr double kZero = 225;
   Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> colours(3, static_cast<Eigen::Index>(deviation_mm.size()));
   for (std::size_t i = 0; i < deviation_mm.size(); ++i) {
     const double share = std::clamp(deviation_mm[i] / range_mm, -1.0, 1.0);
-    const Eigen::Vector3d colour = zero + std::abs(share) * ((share < 0 ? inside : outside) - zero);
-    for (int k = 0; k < 3; ++k) {
-      colours(k, static_cast<Eigen::Index>(i)) = static_cast<std::uint8_t>(std::lround(colour[k]));
+    const std::array<double, 3>& end = share < 0 ? kInside : kOutside;
+    std::uint8_t* const colour = colours.data() + 3 * i;
+    // Rounded; they are positive.
+    for (std::size_t k = 0; k < 3; ++k) {
+      colour[k] = static_cast<std::uint8_t>(kZero + std::abs(share) * (end[k] - kZero) + 0.5);
     }
   }
   return colours;

@@ -1,5 +1,6 @@
 #include "abbe/verify/parts/surface_average.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -31,10 +32,17 @@ void sort_by_bits(std::vector<Entry>& entries, const KeyOf& key_of) {
   }
 }
 
+/// Column by column, as they lie in memory.
+Eigen::AlignedBox3d box_of(const Eigen::Matrix3Xd& points) {
+  Eigen::AlignedBox3d box;
+  for (Index i = 0; i < points.cols(); ++i) box.extend(points.col(i));
+  return box;
+}
+
 /// Cubes of one size, and their numbers.
 class Cubes {
  public:
-  Cubes(const Eigen::Matrix3Xd& points, double cell) : lower_(points.rowwise().minCoeff()), cell_(cell) {}
+  Cubes(const Vector3d& lower, double cell) : lower_(lower), cell_(cell) {}
 
   std::array<std::int64_t, 3> cube_of(const Vector3d& point) const {
     std::array<std::int64_t, 3> cube{};
@@ -58,8 +66,7 @@ class Cubes {
 };
 
 /// Readings in each cube that has any.
-std::vector<std::size_t> readings_of_cubes(const Eigen::Matrix3Xd& points, double cell) {
-  const Cubes cubes(points, cell);
+std::vector<std::size_t> readings_of_cubes(const Eigen::Matrix3Xd& points, const Cubes& cubes) {
   std::vector<std::uint64_t> keys(static_cast<std::size_t>(points.cols()));
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = cubes.key_of(points.col(static_cast<Index>(i)));
   sort_by_bits(keys, [](std::uint64_t key) { return key; });
@@ -74,7 +81,7 @@ std::vector<std::size_t> readings_of_cubes(const Eigen::Matrix3Xd& points, doubl
 /// Readings sorted by the cubes of a grid.
 class CubeGrid {
  public:
-  CubeGrid(const Eigen::Matrix3Xd& points, double cell) : grid_(points, cell) {
+  CubeGrid(const Eigen::Matrix3Xd& points, const Cubes& cubes) : grid_(cubes) {
     struct Entry {
       std::uint64_t key = 0;
       std::uint32_t reading = 0;
@@ -123,12 +130,12 @@ class CubeGrid {
 
 double radius_of_readings(const SurfaceReadings& readings, std::size_t wanted) {
   if (readings.foot.cols() == 0) return 0;
-  const double extent =
-      std::max((readings.foot.rowwise().maxCoeff() - readings.foot.rowwise().minCoeff()).norm(), 1e-9);
+  const Eigen::AlignedBox3d box = box_of(readings.foot);
+  const double extent = std::max(box.sizes().norm(), 1e-9);
   const double largest = extent / 10;
   double cell = extent / std::sqrt(static_cast<double>(readings.foot.cols())) / 4;
   while (cell < largest) {
-    std::vector<std::size_t> counts = readings_of_cubes(readings.foot, cell);
+    std::vector<std::size_t> counts = readings_of_cubes(readings.foot, {box.min(), cell});
     const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
     std::nth_element(counts.begin(), middle, counts.end());
     if (*middle >= wanted) break;
@@ -144,8 +151,8 @@ SurfaceAverage surface_average(const SurfaceReadings& readings, const Eigen::Mat
   result.mean_mm.assign(m, 0.0);
   result.count.assign(m, 0);
   if (readings.foot.cols() == 0 || !(radius_mm > 0)) return result;
-  const double extent = (readings.foot.rowwise().maxCoeff() - readings.foot.rowwise().minCoeff()).maxCoeff();
-  const CubeGrid grid(readings.foot, std::max(radius_mm, 1e-6 * extent));
+  const Eigen::AlignedBox3d box = box_of(readings.foot);
+  const CubeGrid grid(readings.foot, {box.min(), std::max(radius_mm, 1e-6 * box.sizes().maxCoeff())});
   constexpr std::size_t kBlock = 1024;
   for_each_block((m + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(m, (block + 1) * kBlock); ++i) {
