@@ -1,11 +1,10 @@
-"""Counts the messages and bytes that each of several processes sends, for each kind of shared work (docs/scale.md).
+"""Counts what each of several processes sends and receives, for each kind of shared work (docs/scale.md).
 
     messages.py --abbe PROGRAM --mpirun PROGRAM --examples FOLDER --counts LIBRARY [--processes N ...] [--only KIND ...]
 
 LIBRARY is message_counts.cpp as a shared library. More processes than cores are started: their times say nothing, and
-what they send does not depend on times, but for the questions for blocks. All messages go to the first process or come
-from it. For every kind: what the first process sends, what it receives, and how much that is for an item and for each
-further process.
+what they send does not depend on times, but for the questions for blocks. For every kind: the messages and bytes that
+the first process sends and receives, those of the process that has most of them, and how much that is for an item.
 """
 
 import argparse
@@ -21,7 +20,7 @@ ENVIRONMENT = {**kinds.ENVIRONMENT, "OMPI_MCA_hwloc_base_binding_policy": "none"
 
 
 def counted(arguments, folder, processes, words):
-    """[(messages, bytes, largest)] of what each process sends."""
+    """[(messages sent, bytes sent, messages received, bytes received)] of each process."""
     counts = folder / "counts"
     done = subprocess.run([arguments.mpirun, "-n", str(processes), "--oversubscribe", "-x",
                            f"LD_PRELOAD={arguments.counts.resolve()}", "-x", f"ABBE_MESSAGE_COUNTS={counts}",
@@ -29,7 +28,12 @@ def counted(arguments, folder, processes, words):
                           env={**os.environ, **ENVIRONMENT})
     if done.returncode != 0:
         sys.exit(done.stderr)
-    return [tuple(map(int, pathlib.Path(f"{counts}.{rank}").read_text().split())) for rank in range(processes)]
+    numbers = [list(map(int, pathlib.Path(f"{counts}.{rank}").read_text().split())) for rank in range(processes)]
+    return [(sent, out, received, back) for sent, out, _, received, back, _ in numbers]
+
+
+def words_of(sent, out, received, back):
+    return f"sends {sent} messages, {out / 1e6:.4g} MB, and receives {received}, {back / 1e6:.4g} MB"
 
 
 def main():
@@ -39,6 +43,7 @@ def main():
     parser.add_argument("--errors", type=pathlib.Path, help="errors of the trunnion mill with covariance")
     parser.add_argument("--processes", nargs="+", type=int, default=[2, 3, 4, 6, 8])
     parser.add_argument("--only", nargs="+", metavar="KIND")
+    parser.add_argument("--items", type=int, help="in place of the usual number of each kind")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         runs = kinds.Runs(arguments, pathlib.Path(folder))
@@ -48,13 +53,15 @@ def main():
                  "plan": (kinds.plan, 240)}
         for name in arguments.only or given:
             words, items = given[name]
+            items = arguments.items or items
             for processes in arguments.processes:
-                sent = counted(arguments, runs.folder, processes, words(runs, items))
-                out, back = sent[0], [sum(column) for column in zip(*sent[1:])]
-                print(f"{name}, {items} items, {processes} processes: the first one sends {out[0]} messages, "
-                      f"{out[1]} bytes, and receives {back[0]} messages, {back[1]} bytes; of an item "
-                      f"{out[1] / items / (processes - 1):.2f} bytes to each process and {back[1] / items:.2f} back",
-                      flush=True)
+                counts = counted(arguments, runs.folder, processes, words(runs, items))
+                messages = max(range(processes), key=lambda rank: counts[rank][0] + counts[rank][2])
+                size = max(range(processes), key=lambda rank: counts[rank][1] + counts[rank][3])
+                print(f"{name}, {items} items, {processes} processes: the first one {words_of(*counts[0])}; most "
+                      f"messages, process {messages + 1}: {words_of(*counts[messages])}; most bytes, process "
+                      f"{size + 1}: {words_of(*counts[size])}, {(counts[size][1] + counts[size][3]) / items:.1f} bytes "
+                      "for an item", flush=True)
 
 
 if __name__ == "__main__":

@@ -30,6 +30,21 @@ inline std::uint64_t take_number(std::span<const std::byte>& bytes) {
   return number;
 }
 
+/// Appends bytes with their number in front.
+inline void put_bytes(std::span<const std::byte> added, std::vector<std::byte>& bytes) {
+  put_number(added.size(), bytes);
+  bytes.insert(bytes.end(), added.begin(), added.end());
+}
+
+/// Takes such bytes off the front. @throws WorkError if they are cut off
+inline std::span<const std::byte> take_bytes(std::span<const std::byte>& bytes) {
+  const std::uint64_t size = take_number(bytes);
+  if (size > bytes.size()) throw WorkError("a message of a process is cut off");
+  const std::span<const std::byte> taken = bytes.first(size);
+  bytes = bytes.subspan(size);
+  return taken;
+}
+
 /// Appends a block with its results.
 inline void put_block(const NumberedWork& work, std::size_t block, std::vector<std::byte>& bytes) {
   put_number(block, bytes);
@@ -44,10 +59,8 @@ inline void put_block(const NumberedWork& work, std::size_t block, std::vector<s
 template <typename Take>
 void take_blocks(std::span<const std::byte> bytes, const Take& take) {
   while (!bytes.empty()) {
-    const std::uint64_t block = take_number(bytes), size = take_number(bytes);
-    if (size > bytes.size()) throw WorkError("a message of a process is cut off");
-    take(static_cast<std::size_t>(block), bytes.first(size));
-    bytes = bytes.subspan(size);
+    const std::uint64_t block = take_number(bytes);
+    take(static_cast<std::size_t>(block), take_bytes(bytes));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "abbe/geometry/digest.h"
 #include "abbe/geometry/numbered_work.h"
 #include "abbe/plan/readings/planning.h"
+#include "abbe/plan/readings/planning_best.h"
 #include "abbe/plan/readings/planning_design.h"
 #include "abbe/plan/readings/planning_small.h"
 
@@ -19,12 +20,38 @@ using planning::log_determinant;
 using planning::Small;
 using planning::trace_of_quotient;
 
-struct BestOfBlock {
-  std::size_t block;
-  PlanDesign::Best best;
+/// In front of the bytes of a process.
+struct GivenBy {
+  std::uint64_t rank, size;
 };
 
+void append(std::span<const std::byte> added, std::vector<std::byte>& all) {
+  all.insert(all.end(), added.begin(), added.end());
+}
+
 }  // namespace
+
+std::vector<std::vector<std::byte>> gather(const WorkInStep& in_step, std::uint64_t fingerprint,
+                                           std::span<const std::byte> own) {
+  std::vector<std::byte> given;
+  const GivenBy here{in_step.rank, own.size()};
+  if (!own.empty()) append(std::as_bytes(std::span(&here, 1)), given);
+  append(own, given);
+  const std::vector<std::byte> all = in_step.merged(
+      fingerprint, std::move(given),
+      [](std::vector<std::byte>& bytes, std::span<const std::byte> following) { append(following, bytes); });
+  std::vector<std::vector<std::byte>> parts(in_step.processes);
+  for (std::span<const std::byte> left = all; !left.empty();) {
+    GivenBy by{};
+    if (left.size() < sizeof(by)) throw WorkError("what a process has given is cut off");
+    std::memcpy(&by, left.data(), sizeof(by));
+    left = left.subspan(sizeof(by));
+    if (left.size() < by.size) throw WorkError("what a process has given is cut off");
+    parts.at(by.rank).assign(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(by.size));
+    left = left.subspan(by.size);
+  }
+  return parts;
+}
 
 std::uint64_t fingerprint_of_choosing(const PlanningSpace& space, const PlanningOptions& options) {
   Digest digest;
@@ -52,8 +79,8 @@ std::uint64_t fingerprint_of_choosing(const PlanningSpace& space, const Planning
 PlanShares::PlanShares(const WorkInStep& in_step, std::uint64_t fingerprint)
     : in_step_(in_step), fingerprint_(fingerprint) {}
 
-std::vector<std::vector<std::byte>> PlanShares::gather(std::span<const std::byte> bytes) const {
-  return in_step_.gather(fingerprint_, bytes);
+std::vector<std::byte> PlanShares::merged(std::vector<std::byte> own, const WorkInStep::Merge& merge) const {
+  return any() ? in_step_.merged(fingerprint_, std::move(own), merge) : own;
 }
 
 void PlanShares::complete(std::span<const Piece> pieces) const {
@@ -61,37 +88,17 @@ void PlanShares::complete(std::span<const Piece> pieces) const {
   std::vector<std::byte> own;
   for (const Piece& piece : pieces)
     if (piece.owner == in_step_.rank) pack_numbers(piece.numbers, own);
-  const std::vector<std::vector<std::byte>> all = gather(own);
+  const std::vector<std::vector<std::byte>> all = gather(in_step_, fingerprint_, own);
   std::vector<std::span<const std::byte>> left(all.begin(), all.end());
   for (const Piece& piece : pieces)
     if (piece.owner != in_step_.rank) unpack_numbers(left.at(piece.owner), piece.numbers);
 }
 
-// A block can only become the best one if it is better than every one before it, ties taken into account: the best one
-// of those before is at most as far above each of them. So only these few are given. Half a tie is far above rounding.
 PlanDesign::Best PlanDesign::best_of_blocks() const {
-  std::vector<BestOfBlock> found;
-  double least = kImpossible;
-  for (std::size_t k = 0; k < shares_.own_count(block_count()); ++k) {
-    const Best& one = best_[shares_.own(k)];
-    if (!(one.score + one.tie / 2 < least)) continue;
-    least = std::min(least, one.score + one.tie);
-    found.push_back({shares_.own(k), one});
-  }
-  if (shares_.any()) {
-    const std::vector<std::vector<std::byte>> all = shares_.gather(std::as_bytes(std::span(found)));
-    found.clear();
-    for (const std::vector<std::byte>& bytes : all) {
-      const std::size_t before = found.size();
-      found.resize(before + bytes.size() / sizeof(BestOfBlock));
-      if (!bytes.empty()) std::memcpy(&found[before], bytes.data(), (found.size() - before) * sizeof(BestOfBlock));
-    }
-    std::sort(found.begin(), found.end(), [](const BestOfBlock& a, const BestOfBlock& b) { return a.block < b.block; });
-  }
-  Best best;
-  for (const BestOfBlock& one : found)
-    if (one.best.score < best.score - one.best.tie) best = one.best;
-  return best;
+  PossibleBests own;
+  for (std::size_t k = 0; k < shares_.own_count(block_count()); ++k) own.add({shares_.own(k), best_[shares_.own(k)]});
+  if (!shares_.any()) return best_of(own.blocks());
+  return best_of(blocks_in(shares_.merged(bytes_of(own.blocks()), merge_possible_bests)));
 }
 
 std::size_t PlanDesign::owner_of(std::size_t candidate) const {

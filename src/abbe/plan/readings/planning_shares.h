@@ -17,6 +17,10 @@ struct PlanningOptions;
 /// Fingerprint of everything that a choice depends on. All rows of the candidates have a part in the seen directions.
 std::uint64_t fingerprint_of_choosing(const PlanningSpace& space, const PlanningOptions& options);
 
+/// What all processes give, in their order; those that give nothing take no part of the messages.
+std::vector<std::vector<std::byte>> gather(const WorkInStep& in_step, std::uint64_t fingerprint,
+                                           std::span<const std::byte> own);
+
 /// Blocks are dealt out to the processes in turn, so that neighbouring blocks, which are alike, do not burden one of
 /// them.
 class PlanShares {
@@ -33,8 +37,8 @@ class PlanShares {
   }
   std::size_t own(std::size_t k) const { return in_step_.rank + k * in_step_.processes; }
 
-  /// What all processes give, in their order.
-  std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) const;
+  /// What merging the bytes of all processes makes (WorkInStep).
+  std::vector<std::byte> merged(std::vector<std::byte> own, const WorkInStep::Merge& merge) const;
 
   /// Numbers that one process has, its owner.
   struct Piece {

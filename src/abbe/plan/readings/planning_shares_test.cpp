@@ -12,32 +12,43 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Threads in place of processes.
+/// Threads in place of processes. Each merges what all give in a grouping of its own.
 class StepThreads {
  public:
   explicit StepThreads(std::size_t count) : parts_(count), fingerprints_(count), all_(static_cast<int>(count)) {}
 
   WorkInStep of(std::size_t rank) {
-    return {parts_.size(), rank, [this, rank](std::uint64_t fingerprint, std::span<const std::byte> own) {
-              parts_[rank].assign(own.begin(), own.end());
+    return {parts_.size(), rank,
+            [this, rank](std::uint64_t fingerprint, std::vector<std::byte> own, const WorkInStep::Merge& merge) {
+              parts_[rank] = std::move(own);
               fingerprints_[rank] = fingerprint;
               all_.arrive_and_wait();
-              std::vector<std::vector<std::byte>> parts = parts_;
+              std::vector<std::byte> total = merged(parts_, merge, rank);
               for (const std::uint64_t one : fingerprints_) same_ = same_ && one == fingerprint;
-              if (rank == 0) ++exchanges_;
               all_.arrive_and_wait();
-              return parts;
+              if (rank == 0) ++exchanges_;
+              return total;
             }};
   }
   std::size_t exchanges() const { return exchanges_; }
   bool same_fingerprints() const { return same_; }
 
  private:
+  std::vector<std::byte> merged(std::vector<std::vector<std::byte>> parts, const WorkInStep::Merge& merge,
+                                std::size_t rank) const {
+    for (RandomStream random(10 + rank, exchanges_); parts.size() > 1;) {
+      const auto first = parts.begin() + static_cast<std::ptrdiff_t>(random.bits() % (parts.size() - 1));
+      merge(*first, *std::next(first));
+      parts.erase(std::next(first));
+    }
+    return std::move(parts.front());
+  }
+
   std::vector<std::vector<std::byte>> parts_;
   std::vector<std::uint64_t> fingerprints_;
   std::barrier<> all_;
   std::atomic<bool> same_ = true;
-  std::size_t exchanges_ = 0;
+  std::atomic<std::size_t> exchanges_ = 0;
 };
 
 /// Many candidates, so that they are shared. Of each third one there is another that is worth the same but for
@@ -121,7 +132,7 @@ TEST_P(SharedPlan, IsTheSameForAnyNumberOfProcessesAndThreads) {
   const std::vector<ReadingPlan> expected = planned(1);
   ASSERT_EQ(expected.front().status, PlanningStatus::done);
   EXPECT_GT(expected.front().exchanges, 0U);
-  for (const std::size_t processes : {2U, 3U, 5U}) {
+  for (const std::size_t processes : {2U, 3U, 5U, 9U}) {
     StepThreads group(processes);
     std::vector<std::vector<ReadingPlan>> found(processes);
     {
@@ -144,11 +155,12 @@ TEST(SharedPlanTest, HasAnotherFingerprintWhereAnythingIsAnother) {
     struct Stop {};
     std::uint64_t found = 0;
     PlanningOptions shared = options;
-    shared.in_step = {2, 0,
-                      [&](std::uint64_t given, std::span<const std::byte>) -> std::vector<std::vector<std::byte>> {
-                        found = given;
-                        throw Stop();
-                      }};
+    shared.in_step = {
+        2, 0,
+        [&](std::uint64_t given, const std::vector<std::byte>&, const WorkInStep::Merge&) -> std::vector<std::byte> {
+          found = given;
+          throw Stop();
+        }};
     try {
       plan_readings(PlanningSpace(candidates, Eigen::MatrixXd()), shared);
     } catch (const Stop&) {

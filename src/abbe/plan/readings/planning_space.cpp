@@ -11,6 +11,7 @@
 #include "abbe/geometry/digest.h"
 #include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/singular_values.h"
+#include "abbe/plan/readings/planning_shares.h"
 
 namespace abbe {
 namespace {
@@ -95,7 +96,7 @@ void multiply_rows(const PlanningCandidates::Rows& rows, const Eigen::MatrixXd& 
     own.noalias() = rows.middleRows(first(rank) - before, first(rank + 1) - first(rank) + before) * factor;
     const auto left_out = static_cast<std::size_t>(before * own.cols());
     const std::span<const double> numbers(own.data() + left_out, static_cast<std::size_t>(own.size()) - left_out);
-    const std::vector<std::vector<std::byte>> all = in_step.gather(digest.value(), std::as_bytes(numbers));
+    const std::vector<std::vector<std::byte>> all = gather(in_step, digest.value(), std::as_bytes(numbers));
     for (Index process = 0; process < processes; ++process) {
       std::span<const std::byte> bytes = all[static_cast<std::size_t>(process)];
       for (Index row = first(process); row < first(process + 1); ++row)
