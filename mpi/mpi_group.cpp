@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <climits>
+#include <cstdlib>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -23,13 +25,22 @@ constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
 /// As long as MPI sends nearly, where nobody relays anything.
 constexpr std::size_t kLongestPiece = std::size_t{1} << 30;
 
+/// On one machine messages go through its memory. What serves networks is then not loaded, which would take every
+/// process 10 ms. What the environment says has precedence.
+void leave_networks_out() {
+  const char *const here = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE"), *const all = std::getenv("OMPI_COMM_WORLD_SIZE");
+  if (here != nullptr && all != nullptr && std::string_view(here) == all) ::setenv("OMPI_MCA_pml", "ob1", 0);
+}
+
 }  // namespace
 
 MpiGroup::MpiGroup(int* argc, char*** argv) {
-  // By default the kernel ends a sleep up to 50 us late, which is longer than some messages take.
-  ::prctl(PR_SET_TIMERSLACK, 1UL, 0, 0, 0);
+  leave_networks_out();
   int level = 0;
   MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
+  // By default the kernel ends a sleep up to 50 us late, which is longer than some messages take. While MPI starts, the
+  // processes sleep hundreds of times.
+  ::prctl(PR_SET_TIMERSLACK, 1UL, 0, 0, 0);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
   place_ = place_in_tree(rank_, size_);
@@ -93,7 +104,12 @@ void MpiGroup::drop_sent() {
 }
 
 void MpiGroup::wait_for_sent(std::size_t most) {
-  for (; sending_.size() > most; sending_.pop_front()) MPI_Wait(&sending_.front().request, MPI_STATUS_IGNORE);
+  // MPI_Wait() would keep a processor busy until the receiver comes.
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  for (drop_sent(); sending_.size() > most; drop_sent()) {
+    std::this_thread::sleep_for(std::clamp<Clock::duration>((Clock::now() - begin) / 16, 20us, 1ms));
+  }
 }
 
 std::optional<MpiGroup::Message> MpiGroup::look() {
@@ -107,16 +123,15 @@ std::optional<MpiGroup::Message> MpiGroup::look() {
   return message;
 }
 
-MpiGroup::Message MpiGroup::receive(const std::stop_token& stop) {
-  Message message = receive_any(stop);
+MpiGroup::Message MpiGroup::receive(const std::stop_token& stop, Waiting waiting) {
+  Message message = receive_any(stop, waiting);
   end_if_told(message);
   return message;
 }
 
-MpiGroup::Message MpiGroup::receive_any(const std::stop_token& stop) {
+MpiGroup::Message MpiGroup::receive_any(const std::stop_token& stop, Waiting waiting) {
   // MPI_Recv() would keep a processor busy, which a computing process needs.
   using Clock = std::chrono::steady_clock;
-  constexpr int kBusyLooks = 400;
   MPI_Status status;
   int has_come = 0;
   Clock::time_point begin;
@@ -125,12 +140,12 @@ MpiGroup::Message MpiGroup::receive_any(const std::stop_token& stop) {
     if (has_come != 0) return receive_found(status);
     stop_if_asked(stop);
     if (look == 0) begin = Clock::now();
-    if (look < kBusyLooks) continue;
+    if (look < waiting.busy_looks) continue;
     drop_sent();
-    // The longer it has waited, the longer it sleeps: looking takes processor time, and waking up late takes an eighth
-    // of what it has waited anyway. While it looks, its own long messages go on.
-    const Clock::duration longest = sending_.empty() ? 1ms : 50us;
-    std::this_thread::sleep_for(std::clamp<Clock::duration>((Clock::now() - begin) / 8, 5us, longest));
+    // The longer it has waited, the longer it sleeps: looking takes processor time, and waking up late takes a part of
+    // what it has waited anyway. While it looks, its own long messages go on.
+    const Clock::duration longest = sending_.empty() ? 1ms : 50us, waited = Clock::now() - begin;
+    std::this_thread::sleep_for(std::clamp<Clock::duration>(waited / waiting.part, waiting.least_sleep, longest));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <mpi.h>
 
+#include <chrono>
 #include <cstddef>
 #include <list>
 #include <memory>
@@ -92,10 +93,20 @@ class MpiGroup : public ProcessGroup {
   void send_soon(int to, int tag, std::vector<std::byte> bytes);
   void drop_sent();
   void wait_for_sent(std::size_t most = 0);  ///< until so few messages are under way
-  Message receive_any(const std::stop_token& stop = {});
+  /// How a process waits for a message: it looks busily, and then sleeps between looks, for this part of the time that
+  /// it has waited so far.
+  struct Waiting {
+    int busy_looks, part;
+    std::chrono::microseconds least_sleep;
+  };
+  static constexpr Waiting kBusily = {400, 8, std::chrono::microseconds(5)};
+  /// Where the message may take long, as blocks do: a busy look takes nearly 1 us of processor time.
+  static constexpr Waiting kPatiently = {20, 16, std::chrono::microseconds(20)};
+  Message receive_any(const std::stop_token& stop = {}, Waiting waiting = kBusily);
   Message receive_found(const MPI_Status& status);
-  Message receive(const std::stop_token& stop = {});  ///< as receive_any(), but ends if that is what it says
-  std::optional<Message> look();                      ///< a message from anybody, if there is one
+  /// As receive_any(), but ends if that is what it says.
+  Message receive(const std::stop_token& stop = {}, Waiting waiting = kBusily);
+  std::optional<Message> look();  ///< a message from anybody, if there is one
   void take_what_is_left();
 
   // Faults.

@@ -15,8 +15,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long a process waits for a block of its own before it looks for messages.
-constexpr auto kLook = 1000us;
+/// How long a process waits for a block of its own before it looks for messages: short at the beginning, when the
+/// others have nothing yet. Looking takes processor time from the block.
+class LookingOut {
+ public:
+  std::chrono::microseconds wait() const {
+    const auto elapsed = std::chrono::steady_clock::now() - begin_;
+    return std::clamp(std::chrono::duration_cast<std::chrono::microseconds>(elapsed / 8), 100us, 3000us);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
 /// Every process is given blocks for so long, so that it never waits for an answer, s.
 constexpr double kAhead = 0.02;
 /// In one message: it must not be so long that sending it waits for its receiver.
@@ -43,6 +53,22 @@ class Pace {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// Blocks that a process computes without having asked: half of its range, so that it does not wait for an answer at
+/// the beginning of each of many short works.
+struct OwnBlocks {
+  std::size_t begin = 0, end = 0;
+
+  OwnBlocks(const NumberedWork& work, int rank, int size) {
+    // Which kept blocks are there is not known to all processes.
+    if (!work.in_ranges || work.is_kept) return;
+    const auto at = [&](int process) {
+      return static_cast<std::size_t>(process) * work.blocks / static_cast<std::size_t>(size);
+    };
+    begin = at(rank);
+    end = begin + (at(rank + 1) - begin) / 2;
+  }
+};
+
 BlockQuestion question_in(std::span<const std::byte> bytes) {
   BlockQuestion question{};
   if (bytes.size() != sizeof(question)) throw WorkError("a question of a process is cut off");
@@ -56,7 +82,11 @@ BlockQuestion question_in(std::span<const std::byte> bytes) {
 class MpiGroup::FirstOfWork {
  public:
   FirstOfWork(MpiGroup& group, const NumberedWork& work)
-      : group_(group), work_(work), owner_(work.blocks, kNobody), is_done_(work.blocks, 0) {
+      : group_(group),
+        work_(work),
+        processes_(static_cast<std::size_t>(group.size_)),
+        owner_(work.blocks, kNobody),
+        is_done_(work.blocks, 0) {
     for (std::size_t block = 0; block < work.blocks; ++block) {
       if (work.has(block)) {
         is_done_[block] = 1;
@@ -65,6 +95,10 @@ class MpiGroup::FirstOfWork {
       }
     }
     to_hand_out_ = open_;
+    for (int rank = 1; rank < group.size_; ++rank) {
+      const OwnBlocks own(work, rank, group.size_);
+      for (std::size_t block = own.begin; block < own.end; ++block) own_by(rank, block);
+    }
   }
 
   void run() {
@@ -81,16 +115,28 @@ class MpiGroup::FirstOfWork {
  private:
   static constexpr int kNobody = -1;
 
+  /// What is known of a process.
+  struct Process {
+    std::size_t open = 0;    ///< blocks that it has to compute or is computing
+    std::size_t wanted = 0;  ///< blocks that it has asked for and not been given
+    std::size_t threads = 1;
+  };
+
   void compute_and_collect() {
     BlockWorkers workers(work_);
+    processes_[0].threads = workers.threads();
+    const LookingOut looking;
     while (open_ > 0) {
-      while (workers.waiting() < workers.threads() && to_hand_out_ > 0) workers.add(next_for(0));
+      const auto has_few = [&] {
+        return workers.waiting() < workers.threads() && processes_[0].open < most_open(processes_[0]);
+      };
+      while (to_hand_out_ > 0 && has_few()) workers.add(next_for(0));
       if (workers.is_idle()) {
-        answer(group_.receive(), workers.threads());
+        answer(group_.receive({}, kPatiently));
       } else {
-        for (const std::size_t block : workers.finished(kLook)) note(block);
+        for (const std::size_t block : workers.finished(is_waited_for() ? 200us : looking.wait())) note(block);
       }
-      while (std::optional<Message> message = group_.look()) answer(*message, workers.threads());
+      while (std::optional<Message> message = group_.look()) answer(*message);
     }
   }
 
@@ -98,19 +144,25 @@ class MpiGroup::FirstOfWork {
     const auto size = static_cast<std::size_t>(group_.size_), at = static_cast<std::size_t>(work_.in_ranges ? rank : 0);
     std::size_t& next = next_.try_emplace(at, at * work_.blocks / size).first->second;
     while (is_done_[next] != 0 || owner_[next] != kNobody) next = (next + 1) % work_.blocks;
-    owner_[next] = rank;
-    --to_hand_out_;
+    own_by(rank, next);
     return next;
+  }
+
+  void own_by(int rank, std::size_t block) {
+    owner_[block] = rank;
+    --to_hand_out_;
+    ++processes_[static_cast<std::size_t>(rank)].open;
   }
 
   void note(std::size_t block) {
     is_done_[block] = 1;
     --open_;
+    --processes_[static_cast<std::size_t>(owner_[block])].open;
     if (work_.finished) work_.finished(block);
     if (work_.reduce) work_.reduce(block);
   }
 
-  void answer(const Message& message, std::size_t threads) {
+  void answer(const Message& message) {
     if (message.tag == kResults) {
       take_blocks(message.bytes, [&](std::size_t block, std::span<const std::byte> results) {
         if (block >= work_.blocks || owner_[block] != message.from || is_done_[block] != 0) {
@@ -119,19 +171,44 @@ class MpiGroup::FirstOfWork {
         work_.unpack(block, results);
         note(block);
       });
-      return;
+      return hand_out(message.from);
     }
     if (message.tag != kAsk) group_.fail_out_of_step(message);
     group_.refuse_other_work(message);
     const BlockQuestion question = question_in(message.bytes);
     if (question.number < group_.works_) return;  // it has been told that this is done
-    // At the end everybody gets few, so that nobody waits for one process.
-    const std::size_t fair = to_hand_out_ / (2 * static_cast<std::size_t>(group_.size_) * threads) + 1;
+    Process& other = processes_[static_cast<std::size_t>(message.from)];
+    other.wanted = std::max<std::size_t>(question.wanted, 1);
+    other.threads = question.threads;
+    hand_out(message.from);
+  }
+
+  /// Half of what would be its share of all that is left. So nobody has much left at the end, when the others have
+  /// nothing.
+  std::size_t most_open(const Process& process) const {
+    return open_ / (2 * static_cast<std::size_t>(group_.size_)) + process.threads;
+  }
+
+  /// True if a process may need one of the last blocks soon.
+  bool is_waited_for() const {
+    return to_hand_out_ > 0 && to_hand_out_ <= 2 * processes_.size() &&
+           std::any_of(processes_.begin(), processes_.end(), [](const Process& other) { return other.wanted > 0; });
+  }
+
+  /// Gives a process what it has asked for, as far as it may have it now.
+  void hand_out(int rank) {
+    Process& other = processes_[static_cast<std::size_t>(rank)];
+    if (other.wanted == 0) return;
+    // A process that has as much already is given the rest when it has done some of it.
+    const std::size_t most = most_open(other);
+    if (to_hand_out_ > 0 && other.open >= most) return;
+    std::size_t count = std::min({other.wanted, to_hand_out_, kMostHandedOut});
+    if (count > 0) count = std::min(count, most - other.open);
+    other.wanted = count > 0 ? other.wanted - count : 0;
     std::vector<std::byte> handed;
-    put_number(question.number, handed);
-    for (std::size_t i = 0; i < std::min<std::size_t>({question.wanted, fair, kMostHandedOut}) && to_hand_out_ > 0; ++i)
-      put_number(next_for(message.from), handed);
-    group_.send(message.from, kHandedOut, handed);
+    put_number(group_.works_, handed);
+    for (; count > 0; --count) put_number(next_for(rank), handed);
+    group_.send(rank, kHandedOut, handed);
   }
 
   /// Down the tree. Whoever relays them gets all, and others those that they have not computed.
@@ -161,6 +238,7 @@ class MpiGroup::FirstOfWork {
 
   MpiGroup& group_;
   const NumberedWork& work_;
+  std::vector<Process> processes_;  // [processes]
   std::vector<int> owner_;
   std::vector<std::uint8_t> is_done_;
   std::size_t open_ = 0, to_hand_out_ = 0;
@@ -176,13 +254,21 @@ class MpiGroup::OtherOfWork {
   void run() {
     const std::uint64_t fingerprint = work_.fingerprint();
     Pace pace(workers_.threads());
+    const LookingOut looking;
+    const auto ask_for = [&](std::size_t wanted) {
+      ask({group_.works_, fingerprint, work_.blocks, wanted, workers_.threads()});
+    };
+    // The question comes before all results, since it says which work they belong to.
+    const OwnBlocks own(work_, group_.rank_, group_.size_);
+    ask_for(own.begin < own.end ? 1 : 2 * workers_.threads());
+    for (std::size_t block = own.begin; block < own.end; ++block) compute_here(block);
     while (!is_over_) {
-      if (!has_asked_ && !is_empty_ && workers_.waiting() < pace.ahead()) {
-        ask({group_.works_, fingerprint, work_.blocks, 2 * pace.ahead() - workers_.waiting()});
-      }
-      if (workers_.is_idle()) take(group_.receive());
+      const std::size_t ahead = pace.ahead(), waiting = workers_.waiting();
+      if (!has_asked_ && !is_empty_ && waiting < ahead) ask_for(2 * ahead - waiting);
+      if (workers_.is_idle()) take(group_.receive({}, kPatiently));
       std::vector<std::byte> results;
-      for (const std::size_t block : workers_.is_idle() ? std::vector<std::size_t>() : workers_.finished(kLook)) {
+      for (const std::size_t block :
+           workers_.is_idle() ? std::vector<std::size_t>() : workers_.finished(looking.wait())) {
         pace.add(1);
         put_block(work_, block, results);
         if (work_.reduce) work_.reduce(block);
@@ -225,11 +311,12 @@ class MpiGroup::OtherOfWork {
     if (take_number(bytes) != group_.works_) return;  // came too late
     has_asked_ = false;
     is_empty_ = bytes.empty();
-    while (!bytes.empty()) {
-      const std::uint64_t block = take_number(bytes);
-      is_own_.at(block) = 1;
-      workers_.add(block);
-    }
+    while (!bytes.empty()) compute_here(take_number(bytes));
+  }
+
+  void compute_here(std::size_t block) {
+    is_own_.at(block) = 1;
+    workers_.add(block);
   }
 
   MpiGroup& group_;
