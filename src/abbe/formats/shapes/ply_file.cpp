@@ -34,6 +34,8 @@ class AsciiSource {
     if (cursor_.word().empty()) fail(field, "the file ends", "a value");
   }
   std::size_t position() const { return cursor_.position(); }
+  static const char* floats(std::size_t) { return nullptr; }
+  static void skip_floats(std::size_t) {}
   /// A digit and a space.
   static std::size_t least_bytes(PlyType) { return 2; }
   [[noreturn]] void fail(const std::string& field, const std::string& problem, const std::string& expected) const {
@@ -83,6 +85,11 @@ class BinarySource {
     at_ += ply_type_size(type);
   }
   std::size_t position() const { return at_; }
+  /// So many float32 numbers from here on in this machine's byte order; null if they are none, or not all there.
+  const char* floats(std::size_t count) const {
+    return kSwap || (contents_.size() - at_) / sizeof(float) < count ? nullptr : contents_.data() + at_;
+  }
+  void skip_floats(std::size_t count) { at_ += count * sizeof(float); }
   static std::size_t least_bytes(PlyType type) { return ply_type_size(type); }
   [[noreturn]] void fail(const std::string& field, const std::string& problem, const std::string& expected) const {
     throw InputError({file_, 0, 0, field}, fmt::format("at byte {}: {}", value_at_, problem), expected);
@@ -141,7 +148,7 @@ class BodyReader {
                        fmt::format("at most {}", kLargestConcavePolygon));
     }
     result_.triangles = faces_.triangles();
-    result_.points *= millimetres(result_.unit.length);
+    if (const double factor = millimetres(result_.unit.length); factor != 1) result_.points *= factor;
     return std::move(result_);
   }
 
@@ -214,6 +221,7 @@ class BodyReader {
     const auto count = static_cast<Eigen::Index>(element.count);
     const bool normals = found == kWanted.size();
     result_.points.resize(3, count);
+    if (slots == std::vector<int>{0, 1, 2} && read_floats(element)) return;
     if (normals) result_.normals.resize(3, count);
     for (Eigen::Index i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < slots.size(); ++k) {
@@ -232,6 +240,24 @@ class BodyReader {
                      "a vector with a length");
       }
     }
+  }
+
+  /// Vertices of three float32, which most scans have. @returns false if they are others, or one of them is refused
+  bool read_floats(const PlyElement& element) {
+    const auto is_float = [](const PlyProperty& property) { return property.type == PlyType::float32; };
+    const std::size_t count = 3 * element.count;
+    const char* const from = source_.floats(count);
+    if (from == nullptr || !std::all_of(element.properties.begin(), element.properties.end(), is_float)) return false;
+    double* const to = result_.points.data();
+    bool good = true;
+    for (std::size_t i = 0; i < count; ++i) {
+      float value = 0;
+      std::memcpy(&value, from + i * sizeof(float), sizeof(float));
+      to[i] = static_cast<double>(value);
+      good &= std::abs(to[i]) <= largest_;
+    }
+    if (good) source_.skip_floats(count);
+    return good;
   }
 
   [[noreturn]] void refuse_number(double value, const std::string& field, Eigen::Index vertex) const {

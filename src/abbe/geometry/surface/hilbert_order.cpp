@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <utility>
 
 #include "abbe/geometry/parallel_blocks.h"
@@ -76,15 +77,21 @@ CurveTable curve_table() {
   return table;
 }
 
+using Coordinates = Eigen::Matrix<double, 3, kSome>;
+using Cells = std::array<std::int32_t, 3 * kSome>;  ///< axes of a point side by side
+
 /// Places on the curve of some cells: Skilling's algorithm as a table of two steps at a time.
-void places(const std::array<std::array<std::uint32_t, kSome>, 3>& cells, std::uint32_t* place) {
+void places(const Cells& cells, std::uint32_t* place) {
   static const CurveTable table = curve_table();
   static const std::uint32_t begin = CubeTurn{}.number();
+  std::array<std::uint32_t, 3 * kSome> bits;
+  for (std::size_t i = 0; i < 3 * kSome; ++i) bits[i] = spread(static_cast<std::uint32_t>(cells[i]));
+  std::array<std::uint32_t, kSome> cubes;
+  for (std::size_t i = 0; i < kSome; ++i) cubes[i] = bits[3 * i] << 2 | bits[3 * i + 1] << 1 | bits[3 * i + 2];
   for (std::size_t i = 0; i < kSome; ++i) {
-    const std::uint32_t cubes = spread(cells[0][i]) << 2 | spread(cells[1][i]) << 1 | spread(cells[2][i]);
     std::uint32_t turn = begin, at = 0;
     for (int shift = 3 * (kBits - 2); shift >= 0; shift -= 6) {
-      const std::uint32_t entry = table[turn * 64 + (cubes >> shift & 63u)];
+      const std::uint32_t entry = table[turn * 64 + (cubes[i] >> shift & 63u)];
       at = at << 6 | (entry & 63u);
       turn = entry >> 6;
     }
@@ -96,12 +103,13 @@ void places(const std::array<std::array<std::uint32_t, kSome>, 3>& cells, std::u
 using Entry = std::uint64_t;
 
 /// Sorts entries whose places agree in the topmost bits, keeping the order of equal ones.
-/// @param scratch  as many
-void sort_bucket(Entry* entries, std::size_t count, Entry* scratch) {
+void sort_bucket(Entry* entries, std::size_t count) {
   if (count < 256) {  // as the number of the point is part of an entry, no two are equal
     std::sort(entries, entries + count);
     return;
   }
+  const auto memory = std::make_unique_for_overwrite<Entry[]>(count);
+  Entry* scratch = memory.get();
   for (const int shift : {32, 32 + kBits}) {
     std::array<std::uint32_t, kCells + 1> begin{};
     for (std::size_t i = 0; i < count; ++i) ++begin[(entries[i] >> shift & (kCells - 1)) + 1];
@@ -121,18 +129,19 @@ std::vector<std::uint32_t> hilbert_order(const Eigen::Ref<const Eigen::Matrix3Xd
   const double extent = (high - low).maxCoeff(), scale = extent > 0 ? kCells / extent : 0;
   std::vector<std::uint32_t> place(blocks * kPointsOfBlock);
   std::vector<std::array<std::uint32_t, kCells>> next(blocks);
+  const Eigen::Array<double, 3, Eigen::Dynamic> first = low.array().replicate(1, kSome);
   for_each_block(blocks, threads, [&](std::size_t block) {
-    std::array<std::array<std::uint32_t, kSome>, 3> cells{};
+    Coordinates coordinates;
+    Cells cells{};
     next[block].fill(0);
     for (std::size_t from = block * kPointsOfBlock; from < std::min(count, (block + 1) * kPointsOfBlock);
          from += kSome) {
       const std::size_t some = std::min(kSome, count - from);
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t i = 0; i < some; ++i) {
-          const Eigen::Index axis = static_cast<Eigen::Index>(k);
-          const double cell = (points(axis, static_cast<Eigen::Index>(from + i)) - low[axis]) * scale;
-          cells[k][i] = static_cast<std::uint32_t>(std::min(std::max(0.0, cell), kCells - 1.0));
-        }
+      coordinates.leftCols(static_cast<Eigen::Index>(some)) =
+          points.middleCols(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(some));
+      for (std::size_t i = 0; i < 3 * some; ++i) {
+        const double cell = (coordinates.data()[i] - first.data()[i]) * scale;
+        cells[i] = static_cast<std::int32_t>(std::min(std::max(0.0, cell), kCells - 1.0));
       }
       places(cells, place.data() + from);
       for (std::size_t i = from; i < from + some; ++i) ++next[block][place[i] >> 2 * kBits];
@@ -150,18 +159,20 @@ std::vector<std::uint32_t> hilbert_order(const Eigen::Ref<const Eigen::Matrix3Xd
     }
   }
   begin[kCells] = sum;
-  std::vector<Entry> entries(count), scratch(count);
+  const auto entries = std::make_unique_for_overwrite<Entry[]>(count);
   for_each_block(blocks, threads, [&](std::size_t block) {
     for (std::size_t i = block * kPointsOfBlock; i < std::min(count, (block + 1) * kPointsOfBlock); ++i) {
       entries[next[block][place[i] >> 2 * kBits]++] = static_cast<Entry>(place[i]) << 32 | i;
     }
   });
-  std::vector<std::uint32_t> order(count);
+  // New memory is not free: the kernel clears it. The places are not needed any more.
+  std::vector<std::uint32_t>& order = place;
+  order.resize(count);
   for_each_block(kCells, threads, [&](std::size_t bucket) {
-    sort_bucket(entries.data() + begin[bucket], begin[bucket + 1] - begin[bucket], scratch.data() + begin[bucket]);
+    sort_bucket(entries.get() + begin[bucket], begin[bucket + 1] - begin[bucket]);
     for (std::size_t i = begin[bucket]; i < begin[bucket + 1]; ++i) order[i] = static_cast<std::uint32_t>(entries[i]);
   });
-  return order;
+  return place;
 }
 
 }  // namespace abbe

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "abbe/geometry/decompositions.h"
@@ -26,12 +27,17 @@ class Cells {
   struct Entry {
     Key key;
     Eigen::Index point;
-    bool operator<(const Entry& other) const { return key != other.key ? key < other.key : point < other.point; }
+    bool operator<(const Entry& other) const {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (key[k] != other.key[k]) return key[k] < other.key[k];
+      }
+      return point < other.point;
+    }
   };
 
   Cells(const Eigen::Matrix3Xd& points, Eigen::Index stride, double size) : size_(size) {
     for (Eigen::Index i = 0; i < points.cols(); i += stride) entries_.push_back({key(points.col(i)), i});
-    std::sort(entries_.begin(), entries_.end());
+    sort();
   }
 
   Key key(const Vector3d& point) const {
@@ -60,6 +66,37 @@ class Cells {
   }
 
  private:
+  /// The points are in order already. Where there are few cells, each is counted.
+  void sort() {
+    constexpr std::int64_t kFewCells = std::int64_t{1} << 18;
+    if (entries_.empty()) return;
+    Key low = entries_.front().key, high = low;
+    for (const Entry& entry : entries_) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], entry.key[k]);
+        high[k] = std::max(high[k], entry.key[k]);
+      }
+    }
+    std::array<std::int64_t, 3> side{};
+    std::int64_t cells = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      side[k] = std::int64_t{high[k]} - low[k] + 1;
+      if (side[k] > kFewCells / cells) return std::sort(entries_.begin(), entries_.end());
+      cells *= side[k];
+    }
+    const auto number = [&](const Entry& entry) {
+      std::int64_t at = 0;
+      for (std::size_t k = 0; k < 3; ++k) at = at * side[k] + (entry.key[k] - low[k]);
+      return static_cast<std::size_t>(at);
+    };
+    std::vector<std::size_t> next(static_cast<std::size_t>(cells) + 1);
+    for (const Entry& entry : entries_) ++next[number(entry) + 1];
+    for (std::size_t cell = 1; cell < next.size(); ++cell) next[cell] += next[cell - 1];
+    std::vector<Entry> sorted(entries_.size());
+    for (const Entry& entry : entries_) sorted[next[number(entry)]++] = entry;
+    entries_ = std::move(sorted);
+  }
+
   double size_ = 1;
   std::vector<Entry> entries_;
 };
