@@ -2,13 +2,16 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/digest.h"
 #include "abbe/geometry/registration/registration_pass.h"
+#include "abbe/geometry/registration/seen_motions.h"
 #include "abbe/geometry/registration/undetermined_motions.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/singular_values.h"
@@ -23,13 +26,11 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 constexpr double kMadToDeviation = 1.482602218505602;
-/// Share of the information of the best seen motion below which a motion counts as not seen.
-constexpr double kUnseen = 1e-5;
 /// Points from which the seen motions are told.
 constexpr Index kPointsForRank = 20000;
 /// From so many points on, only distances near the expected median are kept, of which the first is off by about 1 %.
 constexpr Index kManyPoints = 100000;
-constexpr double kFirstWidth = 0.1, kLeastWidth = 0.05, kMostWidth = 0.5;  ///< half, of the median
+constexpr double kFirstWidth = 0.1, kLeastWidth = 0.02, kMostWidth = 0.5;  ///< half, of the median
 constexpr double kFarAway = 0.002;  ///< of the extent: nearer, a curved surface is its tangent plane
 
 /// Weight and slope of the influence function at a distance.
@@ -99,35 +100,31 @@ class Fit {
     return kMadToDeviation * *median_;
   }
 
-  /// Motions that move the points across the surface, as columns; the others move them along it.
-  struct Seen {
-    MatrixXd seen, unseen;  ///< [6, k], orthonormal in the scaled parameters
-  };
-  Seen seen_motions(const RigidTransform& pose, double scale) const {
+  SeenMotions seen_motions(const RigidTransform& pose, double scale) {
     const Index stride = std::max<Index>(1, points_.cols() / kPointsForRank), together = kBlock * stride;
-    Matrix6d information = Matrix6d::Zero();
-    Matrix3Xd moved(3, kBlock);
-    std::vector<SurfacePoint> found(kBlock);
-    std::vector<std::uint32_t> hints(kBlock);
-    for (Index first = 0; first < points_.cols(); first += together) {
+    std::vector<std::vector<MotionRow>> rows(static_cast<std::size_t>((points_.cols() + together - 1) / together));
+    MotionPass pass{.points = static_cast<std::size_t>(points_.cols()), .rows = rows};
+    pass.fingerprint = [&] { return fingerprint("seen motions", pose, {scale, 0, 0}); };
+    pass.compute = [&](std::size_t block) {
+      const Index first = static_cast<Index>(block) * together;
       const Index count = (std::min(together, points_.cols() - first) + stride - 1) / stride;
+      Matrix3Xd moved(3, count);
+      std::vector<SurfacePoint> found(static_cast<std::size_t>(count));
+      std::vector<std::uint32_t> hints(found.size());
       for (Index k = 0; k < count; ++k) {
         moved.col(k) = pose * Vector3d(points_.col(number(first + k * stride)));
         hints[static_cast<std::size_t>(k)] = hints_[static_cast<std::size_t>(first + k * stride)];
       }
-      surface_.closest_block(moved.leftCols(count), found.data(), hints.data());
-      for (Index k = 0; k < count; ++k) {
-        const SurfacePoint& at = found[static_cast<std::size_t>(k)];
+      surface_.closest_block(moved, found.data(), hints.data());
+      for (const SurfacePoint& at : found) {
         if (at.on_border) continue;
         // The part's own normal at the foot: facets would tell about turns of a cylinder that the part does not show.
         const Vector6d row = gradient_of(smooth_.normal(at.triangle, at.point), at.point - reference(pose));
-        information += weight_at(options_.loss, at.distance, scale).weight * row * row.transpose();
+        rows[block].push_back({weight_at(options_.loss, at.distance, scale).weight, row});
       }
-    }
-    const SymmetricEigen<6> solver(information);
-    Index unseen = 0;
-    while (unseen < 6 && !(solver.eigenvalues()[unseen] > kUnseen * solver.eigenvalues()[5])) ++unseen;
-    return {solver.eigenvectors().rightCols(6 - unseen), solver.eigenvectors().leftCols(unseen)};
+    };
+    do_motion_pass(pass, options_.work, options_.threads);
+    return seen_motions_of(rows);
   }
 
   Vector6d unscaled(Vector6d motion) const {
@@ -141,7 +138,7 @@ class Fit {
   WeightedSums pass_again() {
     for (WeightedSums& sums : sums_) sums = {};
     RegistrationPass pass{.points = static_cast<std::size_t>(points_.cols()), .sums = sums_, .distances = distances_};
-    pass.fingerprint = [this] { return fingerprint(); };
+    pass.fingerprint = [this] { return fingerprint("pass", pose_, {scale_, window_.low, window_.high}); };
     pass.compute = [this](std::size_t block) { compute(block); };
     do_pass(pass, options_.work, options_.threads);
     // In the order of the blocks, so that the sum does not depend on the threads.
@@ -182,18 +179,16 @@ class Fit {
   Index number(Index i) const { return order_.empty() ? i : Index{order_[static_cast<std::size_t>(i)]}; }
 
   /// Of a pass, without the surface, which the caller knows.
-  std::uint64_t fingerprint() {
-    if (!of_points_) {
-      Digest digest;
-      digest.add_text(vector_instructions());
-      digest.add_numbers({points_.data(), static_cast<std::size_t>(points_.size())});
-      of_points_ = digest.value();
-    }
+  std::uint64_t fingerprint(std::string_view pass, const RigidTransform& pose, const std::array<double, 3>& limits) {
+    if (!of_points_) of_points_ = digest_of_points(points_);
     Digest digest;
+    digest.add_text(pass);
+    digest.add_text(vector_instructions());
     digest.add(*of_points_);
-    digest.add_numbers({pose_.rotation.data(), 9});
-    digest.add_numbers({pose_.translation.data(), 3});
-    for (const double number : {scale_, window_.low, window_.high, options_.noise_mm}) digest.add_number(number);
+    digest.add_numbers({pose.rotation.data(), 9});
+    digest.add_numbers({pose.translation.data(), 3});
+    digest.add_numbers(limits);
+    digest.add_number(options_.noise_mm);
     digest.add(static_cast<std::uint64_t>(options_.loss) * 2 + (options_.adaptive_distance ? 1 : 0));
     return digest.value();
   }
@@ -252,7 +247,13 @@ class Fit {
   /// Neighbours follow each other, which the search for closest points is fastest with; a motion changes nothing in it.
   static std::vector<std::uint32_t> order_of(const Matrix3Xd& points, int threads) {
     if (points.cols() <= kBlock || points.cols() > Index{0xffffffff}) return {};
-    return hilbert_order(points, points.rowwise().minCoeff(), points.rowwise().maxCoeff(), threads);
+    // In one pass: memory is what takes time.
+    Vector3d low = points.col(0), high = low;
+    for (Index i = 1; i < points.cols(); ++i) {
+      low = low.cwiseMin(points.col(i));
+      high = high.cwiseMax(points.col(i));
+    }
+    return hilbert_order(points, low, high, threads);
   }
 
   const Matrix3Xd& points_;
@@ -313,7 +314,7 @@ FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFind
   double scale = std::max(first_scale, movement);
   fit.expect_scale(first_scale);
   if (options.largest_scale_mm > 0) scale = std::min(scale, options.largest_scale_mm);
-  Fit::Seen seen = fit.seen_motions(pose, scale);
+  SeenMotions seen = fit.seen_motions(pose, scale);
   bool converged = false;
   WeightedSums sums;
   for (; result.iterations < options.iterations && !converged; ++result.iterations) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <random>
 #include <span>
 
@@ -26,6 +25,21 @@ constexpr std::uint32_t kNoKey = 0xffffffff;
 constexpr std::size_t kFirstMatches = 2048;  ///< of the pairs that are tried together
 constexpr std::size_t kBlocks = 32;          ///< of these pairs
 
+/// Bin of an angle of at most 90 degrees; the sign of the cosine does not count.
+std::uint32_t angle_bin(double cosine) {
+  static const std::array<double, 5> limits{std::cos(kAngleBin), std::cos(2 * kAngleBin), std::cos(3 * kAngleBin),
+                                            std::cos(4 * kAngleBin), std::cos(5 * kAngleBin)};
+  const double amount = std::min(1.0, std::abs(cosine));
+  std::uint32_t bin = 0;
+  bool near = false;
+  for (const double limit : limits) {
+    bin += amount < limit ? 1U : 0U;
+    near |= std::abs(amount - limit) < 1e-9;
+  }
+  // At a limit its rounding would decide.
+  return near ? static_cast<std::uint32_t>(std::acos(amount) / kAngleBin) : bin;
+}
+
 /// What two points with normals look like from any side.
 struct PairFeature {
   double distance = 0;
@@ -41,11 +55,8 @@ struct PairFeature {
   }
   /// Does not depend on the signs of the normals.
   std::uint32_t key(double diameter) const {
-    const auto bin = [](double cosine) {
-      return static_cast<std::uint32_t>(std::acos(std::min(1.0, std::abs(cosine))) / kAngleBin);
-    };
     const std::uint32_t length = static_cast<std::uint32_t>(std::min(distance / diameter, 2.0) * kDistanceBins);
-    return ((length * 8 + bin(first)) * 8 + bin(second)) * 8 + bin(between);
+    return ((length * 8 + angle_bin(first)) * 8 + angle_bin(second)) * 8 + angle_bin(between);
   }
   PairFeature reversed() const {
     PairFeature other = *this;
@@ -86,13 +97,23 @@ struct Drawn {
   Eigen::Index from = 0, to = 0;
 };
 
-/// Poses of a pair, and those worth adding: number, score, and the least kept score above which the pose was given
-/// up.
+/// Poses of a pair, and those worth adding: the pose, its score, and the least kept score above which it was given up.
 struct Tried {
-  static constexpr std::size_t kNumbers = 3;
+  static constexpr std::size_t kNumbers = 14;
 
   std::size_t poses = 0;
   std::vector<double> kept;
+
+  void keep(const RigidTransform& pose, const PoseCandidates::Score& score) {
+    kept.insert(kept.end(), pose.rotation.data(), pose.rotation.data() + 9);
+    kept.insert(kept.end(), pose.translation.data(), pose.translation.data() + 3);
+    kept.insert(kept.end(), {score.score, score.given_up_above});
+  }
+  void add_to(PoseCandidates& best) const {
+    for (const double* at = kept.data(); at < kept.data() + kept.size(); at += kNumbers) {
+      best.add({Eigen::Map<const Matrix3d>(at), Eigen::Map<const Vector3d>(at + 9)}, {at[12], at[13]});
+    }
+  }
 
   void pack(std::vector<std::byte>& bytes) const {
     const std::array<double, 2> counts{static_cast<double>(poses), static_cast<double>(kept.size())};
@@ -129,8 +150,8 @@ class PairSearch {
     std::size_t tried = 0, next = 0;
     // Until enough are kept, every pose is scored to the end, and twice if it were shared.
     for (; next < drawn_.size() && tried < options_.poses && !best_.is_full(); ++next) {
-      for_poses(drawn_[next], [&](const auto& make_pose) {
-        best_.add(make_pose());
+      for_poses(drawn_[next], [&](const RigidTransform& pose) {
+        best_.add(pose);
         ++tried;
       });
     }
@@ -140,7 +161,7 @@ class PairSearch {
       for (std::size_t sum = 0; next < drawn_.size() && sum < matches; ++next) sum += drawn_[next].matches;
       const std::vector<Tried> found = try_pairs(first, next - first);
       for (std::size_t k = 0; k < found.size() && tried < options_.poses; ++k) {
-        add(drawn_[first + k], found[k]);
+        found[k].add_to(best_);
         tried += found[k].poses;
       }
     }
@@ -251,30 +272,14 @@ class PairSearch {
 
   Tried try_pair(const Drawn& pair) const {
     Tried result;
-    for_poses(pair, [&](const auto& make_pose) {
-      if (const std::optional<PoseCandidates::Score> found = best_.score_worth_adding(make_pose())) {
-        const std::array<double, Tried::kNumbers> kept{static_cast<double>(result.poses), found->score,
-                                                       found->given_up_above};
-        result.kept.insert(result.kept.end(), kept.begin(), kept.end());
-      }
+    for_poses(pair, [&](const RigidTransform& pose) {
+      if (const auto found = best_.score_worth_adding(pose)) result.keep(pose, *found);
       ++result.poses;
     });
     return result;
   }
 
-  void add(const Drawn& pair, const Tried& found) {
-    if (found.kept.empty()) return;
-    std::size_t number = 0, next = 0;
-    for_poses(pair, [&](const auto& make_pose) {
-      if (next < found.kept.size() && found.kept[next] == static_cast<double>(number)) {
-        best_.add(make_pose(), {found.kept[next + 1], found.kept[next + 2]});
-        next += Tried::kNumbers;
-      }
-      ++number;
-    });
-  }
-
-  /// Calls visit(make_pose) for the poses that a pair fixes.
+  /// Calls visit(pose) for the poses that a pair fixes.
   template <typename Visit>
   void for_poses(const Drawn& pair, const Visit& visit) const {
     const Eigen::Index from = pair.from, to = pair.to;
@@ -288,13 +293,11 @@ class PairSearch {
         for (auto at = first; at != last; ++at) {
           const Eigen::Index i = at->from, j = at->to;
           if (!feature.resembles(part_feature(i, j), diameter_)) continue;
-          visit([&] {
-            const Vector3d a = part_.points.col(i), b = part_.points.col(j);
-            RigidTransform pose;
-            pose.rotation = axes_of(b - a, part_.normals.col(i)) * scan_axes.transpose();
-            pose.translation = 0.5 * (a + b) - pose.rotation * (0.5 * (p + q));
-            return pose;
-          });
+          const Vector3d a = part_.points.col(i), b = part_.points.col(j);
+          RigidTransform pose;
+          pose.rotation = axes_of(b - a, part_.normals.col(i)) * scan_axes.transpose();
+          pose.translation = 0.5 * (a + b) - pose.rotation * (0.5 * (p + q));
+          visit(pose);
         }
       }
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "abbe/geometry/digest.h"
 #include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
@@ -11,7 +12,6 @@ namespace {
 
 /// Blocks that are handed out together: few of few, so that every process gets some.
 constexpr std::size_t kMostTogether = 8, kGroups = 32;
-constexpr std::size_t kLeastShared = 16384;  ///< points
 
 /// Calls with the numbers of which the sums consist, in place.
 template <typename Take>
@@ -78,7 +78,7 @@ void WeightedSums::operator+=(const WeightedSums& other) {
 
 void do_pass(const RegistrationPass& pass, const WorkDriver& driver, int threads) {
   const std::size_t blocks = pass.sums.size();
-  if (!driver || pass.points < kLeastShared) return for_each_block(blocks, threads, pass.compute);
+  if (!driver || pass.points < kLeastSharedPoints) return for_each_block(blocks, threads, pass.compute);
   const std::size_t together = std::clamp<std::size_t>(blocks / kGroups, 1, kMostTogether);
   NumberedWork work{.name = "registration", .blocks = (blocks + together - 1) / together, .threads = threads};
   work.for_all = true;
@@ -103,6 +103,20 @@ void do_pass(const RegistrationPass& pass, const WorkDriver& driver, int threads
     require_unpacked(bytes);
   };
   do_work(driver, work);
+}
+
+std::uint64_t digest_of_points(const Eigen::Matrix3Xd& points) {
+  std::array<Digest, 6> lanes;
+  const std::span numbers(points.data(), static_cast<std::size_t>(points.size()));
+  const std::size_t whole = numbers.size() - numbers.size() % lanes.size();
+  for (std::size_t i = 0; i < whole; i += lanes.size()) {
+    for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k].add_number(numbers[i + k]);
+  }
+  Digest all;
+  all.add_numbers(numbers.subspan(whole));
+  for (const Digest& lane : lanes) all.add(lane.value());
+  all.add(numbers.size());
+  return all.value();
 }
 
 }  // namespace abbe

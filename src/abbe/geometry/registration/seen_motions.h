@@ -1,0 +1,40 @@
+#pragma once
+
+// Internal to geometry: which small motions of a scan its points see, which several processes can find out together.
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "abbe/geometry/numbered_work.h"
+#include "abbe/geometry/registration/fine_registration.h"
+
+namespace abbe {
+
+/// How the distance of a point changes with a motion, whose rotation is scaled by the extent.
+struct MotionRow {
+  double weight = 0;
+  Vector6d gradient;
+};
+
+/// Blocks of points, each of which leaves its rows.
+struct MotionPass {
+  std::size_t points = 0;                  ///< of the scan
+  std::span<std::vector<MotionRow>> rows;  ///< [blocks], empty
+  std::function<void(std::size_t block)> compute{};
+  std::function<std::uint64_t()> fingerprint{};  ///< of everything that they depend on
+};
+
+/// Every process has all rows afterwards, in their places. Those of few points are not shared.
+void do_motion_pass(const MotionPass& pass, const WorkDriver& driver, int threads);
+
+/// Motions that move the points across the surface, as columns; the others move them along it.
+struct SeenMotions {
+  Eigen::MatrixXd seen, unseen;  ///< [6, k], orthonormal in the scaled parameters
+};
+
+SeenMotions seen_motions_of(std::span<const std::vector<MotionRow>> rows);
+
+}  // namespace abbe
