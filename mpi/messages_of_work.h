@@ -15,7 +15,6 @@ struct BlockQuestion {
   std::uint64_t blocks;       ///< of the whole work
   std::uint64_t wanted;       ///< how many to be handed out
   std::uint64_t threads;      ///< that compute blocks
-  std::uint64_t threads;      ///< that compute blocks
 };
 
 inline void put_number(std::uint64_t number, std::vector<std::byte>& bytes) {
