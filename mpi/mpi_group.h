@@ -75,7 +75,7 @@ class MpiGroup : public ProcessGroup {
   /// Of the first process: what merging the bytes of all has made. It then sends down what they are to have.
   std::vector<std::byte> given_by_all(std::uint64_t key, std::vector<std::byte> own, const WorkInStep::Merge& merge,
                                       const std::stop_token& stop = {});
-  void send_down(std::vector<std::byte> total);
+  void send_down(const std::vector<std::byte>& total);
   /// Of all others: gives bytes, and returns what the first process has sent down.
   std::vector<std::byte> give(std::uint64_t key, std::vector<std::byte> own, const WorkInStep::Merge& merge,
                               const std::stop_token& stop = {});

@@ -78,8 +78,9 @@ std::vector<std::byte> MpiGroup::given_by_all(std::uint64_t key, std::vector<std
   return std::move(given_from_here({0, key, std::move(own)}, merge, stop).front().bytes);
 }
 
-void MpiGroup::send_down(std::vector<std::byte> total) {
-  send_in_pieces(children_, kDown, std::make_shared<const std::vector<std::byte>>(std::move(total)));
+void MpiGroup::send_down(const std::vector<std::byte>& total) {
+  // The bytes stay where they are until they have been sent.
+  send_in_pieces(children_, kDown, Bytes(Bytes(), &total));
   wait_for_sent();
 }
 

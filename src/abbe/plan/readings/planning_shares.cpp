@@ -31,26 +31,26 @@ void append(std::span<const std::byte> added, std::vector<std::byte>& all) {
 
 }  // namespace
 
-std::vector<std::vector<std::byte>> gather(const WorkInStep& in_step, std::uint64_t fingerprint,
-                                           std::span<const std::byte> own) {
+GatheredBytes gather(const WorkInStep& in_step, std::uint64_t fingerprint, std::span<const std::byte> own) {
   std::vector<std::byte> given;
   const GivenBy here{in_step.rank, own.size()};
   if (!own.empty()) append(std::as_bytes(std::span(&here, 1)), given);
   append(own, given);
-  const std::vector<std::byte> all = in_step.merged(
+  GatheredBytes all;
+  all.bytes = in_step.merged(
       fingerprint, std::move(given),
       [](std::vector<std::byte>& bytes, std::span<const std::byte> following) { append(following, bytes); });
-  std::vector<std::vector<std::byte>> parts(in_step.processes);
-  for (std::span<const std::byte> left = all; !left.empty();) {
+  all.parts.resize(in_step.processes);
+  for (std::span<const std::byte> left = all.bytes; !left.empty();) {
     GivenBy by{};
     if (left.size() < sizeof(by)) throw WorkError("what a process has given is cut off");
     std::memcpy(&by, left.data(), sizeof(by));
     left = left.subspan(sizeof(by));
     if (left.size() < by.size) throw WorkError("what a process has given is cut off");
-    parts.at(by.rank).assign(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(by.size));
+    all.parts.at(by.rank) = left.first(by.size);
     left = left.subspan(by.size);
   }
-  return parts;
+  return all;
 }
 
 std::uint64_t fingerprint_of_choosing(const PlanningSpace& space, const PlanningOptions& options) {
@@ -88,10 +88,9 @@ void PlanShares::complete(std::span<const Piece> pieces) const {
   std::vector<std::byte> own;
   for (const Piece& piece : pieces)
     if (piece.owner == in_step_.rank) pack_numbers(piece.numbers, own);
-  const std::vector<std::vector<std::byte>> all = gather(in_step_, fingerprint_, own);
-  std::vector<std::span<const std::byte>> left(all.begin(), all.end());
+  GatheredBytes all = gather(in_step_, fingerprint_, own);
   for (const Piece& piece : pieces)
-    if (piece.owner != in_step_.rank) unpack_numbers(left.at(piece.owner), piece.numbers);
+    if (piece.owner != in_step_.rank) unpack_numbers(all.parts.at(piece.owner), piece.numbers);
 }
 
 PlanDesign::Best PlanDesign::best_of_blocks() const {

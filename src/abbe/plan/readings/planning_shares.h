@@ -17,9 +17,14 @@ struct PlanningOptions;
 /// Fingerprint of everything that a choice depends on. All rows of the candidates have a part in the seen directions.
 std::uint64_t fingerprint_of_choosing(const PlanningSpace& space, const PlanningOptions& options);
 
-/// What all processes give, in their order; those that give nothing take no part of the messages.
-std::vector<std::vector<std::byte>> gather(const WorkInStep& in_step, std::uint64_t fingerprint,
-                                           std::span<const std::byte> own);
+/// What all processes have given, in their order.
+struct GatheredBytes {
+  std::vector<std::byte> bytes{};
+  std::vector<std::span<const std::byte>> parts{};  ///< [processes] of the bytes
+};
+
+/// Processes that give nothing take no part of the messages.
+GatheredBytes gather(const WorkInStep& in_step, std::uint64_t fingerprint, std::span<const std::byte> own);
 
 /// Blocks are dealt out to the processes in turn, so that neighbouring blocks, which are alike, do not burden one of
 /// them.

@@ -96,9 +96,9 @@ void multiply_rows(const PlanningCandidates::Rows& rows, const Eigen::MatrixXd& 
     own.noalias() = rows.middleRows(first(rank) - before, first(rank + 1) - first(rank) + before) * factor;
     const auto left_out = static_cast<std::size_t>(before * own.cols());
     const std::span<const double> numbers(own.data() + left_out, static_cast<std::size_t>(own.size()) - left_out);
-    const std::vector<std::vector<std::byte>> all = gather(in_step, digest.value(), std::as_bytes(numbers));
+    const GatheredBytes all = gather(in_step, digest.value(), std::as_bytes(numbers));
     for (Index process = 0; process < processes; ++process) {
-      std::span<const std::byte> bytes = all[static_cast<std::size_t>(process)];
+      std::span<const std::byte> bytes = all.parts[static_cast<std::size_t>(process)];
       for (Index row = first(process); row < first(process + 1); ++row)
         unpack_numbers(bytes, {&product(row, 0), static_cast<std::size_t>(product.cols())});
       require_unpacked(bytes);
