@@ -24,7 +24,7 @@ class Runs:
     def __init__(self, arguments):
         self.abbe, self.mpirun = arguments.abbe, arguments.mpirun
         self.examples, self.out = arguments.examples, arguments.out
-        self.samples = 300000  # of a Monte Carlo that takes some 15 s, or 30 s on a slow processor
+        self.samples = 200000  # of a Monte Carlo that takes some 10 s, or 20 s on a slow processor
 
     def environment(self, **more):
         return {**os.environ, **ENVIRONMENT, **more}
