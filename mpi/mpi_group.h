@@ -117,7 +117,7 @@ class MpiGroup : public ProcessGroup {
   [[noreturn]] void fail_out_of_step(const Message& message);  ///< does not belong to what this process does
   /// Of what has come in step: true for a question or an answer about numbered work that is done.
   bool is_late(const Message& message) const;
-  void refuse_other_work(const Message& question) const;
+  void refuse_other_work(const Message& message) const;  ///< a question
   std::string name_of(int rank) const;
 
   int rank_ = 0, size_ = 1;

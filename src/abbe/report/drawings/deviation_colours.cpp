@@ -20,9 +20,10 @@ Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> deviation_colours(std::span<const
     const double share = std::clamp(deviation_mm[i] / range_mm, -1.0, 1.0);
     const std::array<double, 3>& end = share < 0 ? kInside : kOutside;
     std::uint8_t* const colour = colours.data() + 3 * i;
-    // Rounded; they are positive.
     for (std::size_t k = 0; k < 3; ++k) {
-      colour[k] = static_cast<std::uint8_t>(kZero + std::abs(share) * (end[k] - kZero) + 0.5);
+      const double value = kZero + std::abs(share) * (end[k] - kZero);
+      // It lies between 24 and 225, where this is lround(), which is a call for each value.
+      colour[k] = static_cast<std::uint8_t>(value + 0.5);  // NOLINT(bugprone-incorrect-roundings): see above
     }
   }
   return colours;
