@@ -43,7 +43,10 @@ int run_deviate(const DeviateCommand& command, ProcessGroup* processes) {
   std::optional<TextOnDisk> csv;
   if (work.is_first() && request.page) {
     csv.emplace(command.options.output);
-    request.take_csv = [&csv](std::string text) { text.empty() ? csv->clear() : csv->append(std::move(text)); };
+    request.take_csv = [&csv](std::string text) {
+      if (text.empty()) return csv->clear();
+      csv->append(std::move(text));
+    };
   }
   ScanDeviations result = deviations_of_file(std::move(request), command.files.scan_options(), command.streaming,
                                              work.job(Progress("comparing").callback()));

@@ -20,13 +20,13 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kLongestComplaint = 1000;
-/// So short along a tree of several levels that one receives while the one above it sends.
+/// Along a tree of several levels: short enough that a process receives a part while its parent sends the next one.
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
-/// As long as MPI sends nearly, where nobody relays anything.
+/// Where nobody relays anything: half of the longest message of MPI.
 constexpr std::size_t kLongestPiece = std::size_t{1} << 30;
 
-/// On one machine messages go through its memory. What serves networks is then not loaded, which would take every
-/// process 10 ms. What the environment says has precedence.
+/// On one machine messages go through its memory. The support of networks, which takes every process 10 ms to load, is
+/// then left out, unless the environment says otherwise.
 void leave_networks_out() {
   const char *const here = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE"), *const all = std::getenv("OMPI_COMM_WORLD_SIZE");
   if (here != nullptr && all != nullptr && std::string_view(here) == all) ::setenv("OMPI_MCA_pml", "ob1", 0);
@@ -38,8 +38,8 @@ MpiGroup::MpiGroup(int* argc, char*** argv) {
   leave_networks_out();
   int level = 0;
   MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
-  // By default the kernel ends a sleep up to 50 us late, which is longer than some messages take. While MPI starts, the
-  // processes sleep hundreds of times.
+  // By default the kernel ends a sleep up to 50 us late, which is longer than some messages take. Not before MPI has
+  // started: meanwhile the processes sleep hundreds of times.
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0, 0, 0);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
@@ -57,7 +57,8 @@ MpiGroup::~MpiGroup() {
   MPI_Finalize();
 }
 
-// Whoever sends a long message waits for its receiver. So everybody takes messages until nobody sends any more.
+// A process that sends a long message waits for its receiver. So every process takes messages until none sends any
+// more.
 void MpiGroup::take_what_is_left() {
   MPI_Request nobody_sends = MPI_REQUEST_NULL;
   for (int is_over = 0; is_over == 0;) {

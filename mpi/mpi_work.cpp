@@ -27,14 +27,15 @@ class LookingOut {
  private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
+
 /// Every process is given blocks for so long, so that it never waits for an answer, s.
 constexpr double kAhead = 0.02;
 /// In one message: it must not be so long that sending it waits for its receiver.
 constexpr std::size_t kMostHandedOut = 200;
 constexpr std::size_t kMessageBytes = std::size_t{1} << 26;
-/// Along a tree of several levels: one receives while the one above it sends.
+/// Along a tree of several levels: a process receives a message while its parent sends the next one.
 constexpr std::size_t kRelayedBytes = std::size_t{1} << 18;
-/// So many messages may wait for the processes below.
+/// Messages that may wait for the processes below.
 constexpr std::size_t kMostUnderWay = 16;
 
 /// How many blocks should wait for the threads of a process.
@@ -183,8 +184,8 @@ class MpiGroup::FirstOfWork {
     hand_out(message.from);
   }
 
-  /// Half of what would be its share of all that is left. So nobody has much left at the end, when the others have
-  /// nothing.
+  /// Blocks that a process may have at a time: half of its share of what is left, and one for each thread. So no
+  /// process has much to do at the end, when the others have nothing.
   std::size_t most_open(const Process& process) const {
     return open_ / (2 * static_cast<std::size_t>(group_.size_)) + process.threads;
   }
@@ -199,7 +200,7 @@ class MpiGroup::FirstOfWork {
   void hand_out(int rank) {
     Process& other = processes_[static_cast<std::size_t>(rank)];
     if (other.wanted == 0) return;
-    // A process that has as much already is given the rest when it has done some of it.
+    // A process that has enough is given more when it has done some of it.
     const std::size_t most = most_open(other);
     if (to_hand_out_ > 0 && other.open >= most) return;
     std::size_t count = std::min({other.wanted, to_hand_out_, kMostHandedOut});
@@ -211,7 +212,7 @@ class MpiGroup::FirstOfWork {
     group_.send(rank, kHandedOut, handed);
   }
 
-  /// Down the tree. Whoever relays them gets all, and others those that they have not computed.
+  /// Down the tree. Processes that relay results get all of them; the others get those that they have not computed.
   void send_results() {
     std::vector<int> relays;
     for (const TreePlace::Child& child : group_.place_.children)

@@ -7,6 +7,8 @@ back-ticks alone, "x.h" or "x.cpp", anywhere. `*` stands for any text, and a wor
 docs/architecture.md names one header for each library, which exists and is among those whose examples are run
 (tests/header_examples); the headers that these name in their first comment exist, "x.h" somewhere in their library,
 "room/x.h" there. Every violation is one line: file:line: message.
+
+Prose has at most 120 columns, but for tables, blocks and lines without a blank; documents of golden files are left out.
 """
 import glob
 import os
@@ -28,6 +30,7 @@ HEADER = re.compile(r"[\w-]+(?:/[\w-]+)*\.h\b(?!>)")
 CODE = re.compile(r"`([^`]+)`")
 PLACEHOLDER = re.compile(r"(?<![A-Za-z])[A-Z]{3,}(?![A-Za-z])")
 ROW = re.compile(r"^\| `(\w+)` \|.*\| ([^|]*) \|$")
+COLUMNS = 120
 ARCHITECTURE = "docs/architecture.md"
 EXAMPLES = "tests/header_examples/CMakeLists.txt"
 
@@ -64,6 +67,16 @@ def missing_paths(root, text, names):
             pattern = re.compile(re.escape(PLACEHOLDER.sub("*", name)).replace(r"\*", ".*"))
             if not any(pattern.fullmatch(each) for each in names):
                 yield number, f"no file is called '{name}'"
+
+
+def long_lines(text):
+    block = False
+    for number, line in enumerate(text.splitlines(), 1):
+        start = line.lstrip()
+        if start.startswith("```"):
+            block = not block
+        elif len(line) > COLUMNS and not block and not line.startswith("    ") and start[:1] != "|" and " " in start:
+            yield number, f"{len(line)} columns, expected at most {COLUMNS}"
 
 
 def wrong_lead_headers(root, text):
@@ -112,6 +125,8 @@ def violations(root):
         with open(os.path.join(root, path), encoding="utf-8") as stream:
             text = stream.read()
         for number, message in missing_paths(root, text, names):
+            yield path, number, message
+        for number, message in long_lines(text) if not path.startswith("tests/golden/") else []:
             yield path, number, message
         if path == ARCHITECTURE:
             for number, message in wrong_lead_headers(root, text):

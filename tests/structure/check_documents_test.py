@@ -49,6 +49,14 @@ class CheckDocuments(unittest.TestCase):
             self.assertEqual(len(found), 1, found)
             self.assertTrue(found[0].startswith("include/abbe/machine/machine.h:4: no header is called"), found)
 
+    def test_prose_ends_in_column_120(self):
+        words, wide = "µ " * 59 + "µµ", "µ " * 60 + "µ"
+        self.assertEqual(len(words), 120)
+        self.assertEqual(self.found({"docs/page.md": f"{words}\n| {wide} |\n```\n{wide}\n```\n    {wide}\n{'x' * 130}\n{' ' * 130}\n",
+                                     "tests/golden/README.md": f"{wide}\n"}), [])
+        self.assertEqual(self.found({"docs/page.md": f"text\n{wide}\n"}),
+                         ["docs/page.md:2: 121 columns, expected at most 120"])
+
     def test_every_library_has_one_header_that_is_run(self):
         for cell, words in (("`machine.h`, `axis.h`", "found 2"), ("see there", "found 0"), ("`axis.h`", "not among the examples")):
             found = self.found({"docs/architecture.md": table(machine=cell)})

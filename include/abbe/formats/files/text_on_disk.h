@@ -24,7 +24,6 @@ class TextOnDisk {
   void append(std::string text);
   /// Begins again.
   void clear();
-  bool is_empty() const;
 
  private:
   friend class ResultsFolder;

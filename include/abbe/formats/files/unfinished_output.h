@@ -48,6 +48,9 @@ class Descriptor {
 /// has no such files.
 Descriptor nameless_file(const std::filesystem::path& folder);
 
+/// Gives such a file a name that nothing has, on its own file system. @returns errno, 0 if done
+int give_name(const Descriptor& nameless, const std::filesystem::path& path);
+
 inline constexpr std::string_view kUnfinished = ".abbe-unfinished";  ///< what is being written
 inline constexpr std::string_view kOlder = ".abbe-older";            ///< a folder of results that was moved aside
 

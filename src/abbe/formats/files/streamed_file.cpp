@@ -1,7 +1,6 @@
 #include "abbe/formats/files/streamed_file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -54,10 +53,7 @@ void StreamedFile::commit() {
     // to remove as abandoned.
     lock_if_free(*nameless_);
     const fs::path beside = name_beside(path_, kUnfinished);
-    const std::string open_file = fmt::format("/proc/self/fd/{}", nameless_->number());
-    if (::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, beside.c_str(), AT_SYMLINK_FOLLOW) != 0) {
-      fail_to_write(name_, errno);
-    }
+    if (const int error = give_name(*nameless_, beside)) fail_to_write(name_, error);
     try {
       put_in_place(beside);
     } catch (...) {

@@ -1,7 +1,6 @@
 #include "abbe/formats/files/text_on_disk.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -52,7 +51,6 @@ class TextOnDisk::Writer {
   void append(std::string text) {
     if (text.empty()) return;
     const std::lock_guard lock(mutex_);
-    is_empty_ = false;
     if (error_ != 0) return;
     waiting_.push_back(std::move(text));
     if (file_.is_open()) added_.notify_one();
@@ -66,12 +64,6 @@ class TextOnDisk::Writer {
         (::ftruncate(file_.number(), 0) != 0 || ::lseek(file_.number(), 0, SEEK_SET) != 0)) {
       error_ = errno;
     }
-    is_empty_ = true;
-  }
-
-  bool is_empty() const {
-    const std::lock_guard lock(mutex_);
-    return is_empty_;
   }
 
   void put_at(const fs::path& path, const fs::path& called) {
@@ -80,8 +72,7 @@ class TextOnDisk::Writer {
     if (error_ != 0) fail_to_write(called, error_);
     if (file_.is_open()) {
       if (::fsync(file_.number()) != 0) fail_to_write(called, errno);
-      const std::string open_file = fmt::format("/proc/self/fd/{}", file_.number());
-      if (::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
+      if (give_name(file_, path) == 0) return;
     }
     // In memory, or on a file system other than that of the folder.
     Descriptor named(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
@@ -122,11 +113,11 @@ class TextOnDisk::Writer {
   }
 
   Descriptor file_;  // not open: the text stays in `waiting_`
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable_any added_, written_;
   std::deque<std::string> waiting_;
   int error_ = 0;
-  bool is_writing_ = false, is_empty_ = true;
+  bool is_writing_ = false;
   std::jthread thread_;
 };
 
@@ -137,7 +128,6 @@ TextOnDisk& TextOnDisk::operator=(TextOnDisk&&) noexcept = default;
 
 void TextOnDisk::append(std::string text) { writer_->append(std::move(text)); }
 void TextOnDisk::clear() { writer_->clear(); }
-bool TextOnDisk::is_empty() const { return writer_->is_empty(); }
 void TextOnDisk::put_at(const fs::path& path, const fs::path& called) { writer_->put_at(path, called); }
 
 }  // namespace abbe

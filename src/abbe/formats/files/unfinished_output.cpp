@@ -98,6 +98,11 @@ Descriptor nameless_file(const fs::path& folder) {
 #endif
 }
 
+int give_name(const Descriptor& nameless, const fs::path& path) {
+  const std::string open_file = fmt::format("/proc/self/fd/{}", nameless.number());
+  return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0 ? 0 : errno;
+}
+
 fs::path name_beside(const fs::path& output, std::string_view ending) {
   std::uint64_t random = 0;
   while (::getrandom(&random, sizeof random, 0) != sizeof random) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "abbe/geometry/bounding_box.h"
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/digest.h"
@@ -180,7 +181,9 @@ class Fit {
 
   /// Of a pass, without the surface, which the caller knows.
   std::uint64_t fingerprint(std::string_view pass, const RigidTransform& pose, const std::array<double, 3>& limits) {
-    if (!of_points_) of_points_ = digest_of_points(points_);
+    if (!of_points_) {
+      of_points_ = digest_of_many(std::as_bytes(std::span(points_.data(), static_cast<std::size_t>(points_.size()))));
+    }
     Digest digest;
     digest.add_text(pass);
     digest.add_text(vector_instructions());
@@ -247,13 +250,8 @@ class Fit {
   /// Neighbours follow each other, which the search for closest points is fastest with; a motion changes nothing in it.
   static std::vector<std::uint32_t> order_of(const Matrix3Xd& points, int threads) {
     if (points.cols() <= kBlock || points.cols() > Index{0xffffffff}) return {};
-    // In one pass: memory is what takes time.
-    Vector3d low = points.col(0), high = low;
-    for (Index i = 1; i < points.cols(); ++i) {
-      low = low.cwiseMin(points.col(i));
-      high = high.cwiseMax(points.col(i));
-    }
-    return hilbert_order(points, low, high, threads);
+    const Eigen::AlignedBox3d box = bounding_box(points);
+    return hilbert_order(points, box.min(), box.max(), threads);
   }
 
   const Matrix3Xd& points_;

@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "abbe/geometry/digest.h"
 #include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
@@ -103,20 +102,6 @@ void do_pass(const RegistrationPass& pass, const WorkDriver& driver, int threads
     require_unpacked(bytes);
   };
   do_work(driver, work);
-}
-
-std::uint64_t digest_of_points(const Eigen::Matrix3Xd& points) {
-  std::array<Digest, 6> lanes;
-  const std::span numbers(points.data(), static_cast<std::size_t>(points.size()));
-  const std::size_t whole = numbers.size() - numbers.size() % lanes.size();
-  for (std::size_t i = 0; i < whole; i += lanes.size()) {
-    for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k].add_number(numbers[i + k]);
-  }
-  Digest all;
-  all.add_numbers(numbers.subspan(whole));
-  for (const Digest& lane : lanes) all.add(lane.value());
-  all.add(numbers.size());
-  return all.value();
 }
 
 }  // namespace abbe

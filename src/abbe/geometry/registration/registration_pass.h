@@ -53,7 +53,4 @@ inline constexpr std::size_t kLeastSharedPoints = 16384;
 /// Every process has all sums and distances afterwards, in their places. Few points are not shared.
 void do_pass(const RegistrationPass& pass, const WorkDriver& driver, int threads);
 
-/// Fingerprint of points: that of many takes a quarter of the time of a Digest, each of whose steps waits for the last.
-std::uint64_t digest_of_points(const Eigen::Matrix3Xd& points);
-
 }  // namespace abbe

@@ -13,10 +13,10 @@
 
 namespace abbe {
 
-/// How the distance of a point changes with a motion, whose rotation is scaled by the extent.
+/// How the distance of a point from the part changes with a small motion in the frame of the part.
 struct MotionRow {
-  double weight = 0;
-  Vector6d gradient;
+  double weight = 0;  ///< of the point, 0 to 1
+  Vector6d gradient;  ///< by the rotation vector times the extent of the points and by the shift, both in mm
 };
 
 /// Blocks of points, each of which leaves its rows.
@@ -35,6 +35,7 @@ struct SeenMotions {
   Eigen::MatrixXd seen, unseen;  ///< [6, k], orthonormal in the scaled parameters
 };
 
+/// @param rows  of all blocks, in their order
 SeenMotions seen_motions_of(std::span<const std::vector<MotionRow>> rows);
 
 }  // namespace abbe

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <span>
 #include <utility>
 
@@ -49,22 +47,6 @@ class GrowingColumns {
   Eigen::Matrix3Xd columns_;
   Eigen::Index size_ = 0;
 };
-
-/// Fingerprint of the contents of a file, some words at a time.
-std::uint64_t fingerprint_of_text(std::string_view text) {
-  constexpr std::size_t kWords = 8;
-  std::array<Digest, kWords> digests;
-  std::array<std::uint64_t, kWords> words{};
-  std::size_t at = 0;
-  for (; at + sizeof words <= text.size(); at += sizeof words) {
-    std::memcpy(words.data(), text.data() + at, sizeof words);
-    for (std::size_t k = 0; k < kWords; ++k) digests[k].add(words[k]);
-  }
-  Digest all;
-  for (const Digest& digest : digests) all.add(digest.value());
-  all.add_text(text.substr(at));
-  return all.value();
-}
 
 /// One scan, whose pieces are read and compared in any order and put together in theirs.
 class CountedJob {
@@ -119,7 +101,7 @@ class CountedJob {
     Digest digest;
     digest.add_text(request_.page ? "deviations that count, with points" : "deviations that count");
     digest.add_text(vector_instructions());
-    digest.add(fingerprint_of_text(file_.text()));
+    digest.add(digest_of_many(std::as_bytes(std::span(file_.text()))));
     digest.add(fingerprint_of_mesh(request_.part.mesh));
     digest.add_numbers({pose.rotation.data(), 9});
     digest.add_numbers({pose.translation.data(), 3});
@@ -152,8 +134,10 @@ class CountedJob {
       result_.too_far += own.counts[3];
       result_.all.insert(result_.all.end(), own.deviation_mm.begin(), own.deviation_mm.end());
       for (std::size_t i = 0; i < own.faces.size(); ++i) result_.faces[own.faces[i]].push_back(own.deviation_mm[i]);
-      if (question_.with_points) add_points(own);
-      if (question_.with_points) add_rows(std::move(own.rows), own.deviation_mm.size());
+      if (question_.with_points) {
+        add_points(own);
+        add_rows(std::move(own.rows), own.deviation_mm.size());
+      }
     }
     read_bytes_ += pieces_.end(piece) - pieces_.begin(piece);
     if (job_.progress) job_.progress(read_bytes_, blocks_.end() - blocks_.begin());

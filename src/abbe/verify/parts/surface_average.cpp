@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "abbe/geometry/bounding_box.h"
 #include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
@@ -30,13 +31,6 @@ void sort_by_bits(std::vector<Entry>& entries, const KeyOf& key_of) {
     for (const Entry& entry : entries) sorted[begin[key_of(entry) >> shift & (kDigits - 1)]++] = entry;
     entries.swap(sorted);
   }
-}
-
-/// Column by column, as they lie in memory.
-Eigen::AlignedBox3d box_of(const Eigen::Matrix3Xd& points) {
-  Eigen::AlignedBox3d box;
-  for (Index i = 0; i < points.cols(); ++i) box.extend(points.col(i));
-  return box;
 }
 
 /// Cubes of one size, and their numbers.
@@ -130,7 +124,7 @@ class CubeGrid {
 
 double radius_of_readings(const SurfaceReadings& readings, std::size_t wanted) {
   if (readings.foot.cols() == 0) return 0;
-  const Eigen::AlignedBox3d box = box_of(readings.foot);
+  const Eigen::AlignedBox3d box = bounding_box(readings.foot);
   const double extent = std::max(box.sizes().norm(), 1e-9);
   const double largest = extent / 10;
   double cell = extent / std::sqrt(static_cast<double>(readings.foot.cols())) / 4;
@@ -151,7 +145,7 @@ SurfaceAverage surface_average(const SurfaceReadings& readings, const Eigen::Mat
   result.mean_mm.assign(m, 0.0);
   result.count.assign(m, 0);
   if (readings.foot.cols() == 0 || !(radius_mm > 0)) return result;
-  const Eigen::AlignedBox3d box = box_of(readings.foot);
+  const Eigen::AlignedBox3d box = bounding_box(readings.foot);
   const CubeGrid grid(readings.foot, {box.min(), std::max(radius_mm, 1e-6 * box.sizes().maxCoeff())});
   constexpr std::size_t kBlock = 1024;
   for_each_block((m + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
