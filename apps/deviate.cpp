@@ -39,22 +39,14 @@ int run_deviate(const DeviateCommand& command, ProcessGroup* processes) {
   request.tolerances = command.options.tolerances;
   request.page = !command.options.output.empty();
   SharedWork work(processes, command.options.output, tell_sentence);
-  // Written while points are compared: it is long.
-  std::optional<TextOnDisk> csv;
-  if (work.is_first() && request.page) {
-    csv.emplace(command.options.output);
-    request.take_csv = [&csv](std::string text) {
-      if (text.empty()) return csv->clear();
-      csv->append(std::move(text));
-    };
-  }
+  std::optional<TextOnDisk> csv;  // long: it is written while points are compared
+  if (work.is_first() && request.page) request.take_csv = csv.emplace(command.options.output).taker();
   ScanDeviations result = deviations_of_file(std::move(request), command.files.scan_options(), command.streaming,
                                              work.job(Progress("comparing").callback()));
   if (!work.is_first()) return kDone;
-  std::vector<std::pair<std::string, std::string>> files;
-  if (!command.options.output.empty()) files = taken_deviation_files(result);
-  const int code = finish_evaluation(result.report, command.options, files, [&](ResultsFolder& results) {
+  const int code = finish_evaluation(result.report, command.options, {}, [&](ResultsFolder& results) {
     if (result.csv_was_taken) results.write("deviation.csv", std::move(*csv));
+    for (const auto& [name, contents] : taken_deviation_files(result)) results.write(name, contents);
   });
   work.done();
   return result.has_points() && !result.elsewhere ? code : static_cast<int>(kNegative);

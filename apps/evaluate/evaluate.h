@@ -45,8 +45,7 @@ void add_expansion(Subcommand& command, std::span<const TestNumber<ExpansionNumb
 
 /// Prints the report for people or programs and writes the results folder: evaluation.json, one SVG file per plot,
 /// report.html. @returns kNegative if a tolerance is exceeded or a figure with one could not be evaluated, else kDone
-/// @param files       more for the results folder: name, contents
-/// @param write_more  writes what else belongs there
+/// @param files  more for the results folder: name, contents; `write_more` writes what else belongs there
 int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& options,
                       const std::vector<std::pair<std::string, std::string>>& files = {},
                       const std::function<void(ResultsFolder&)>& write_more = {});

@@ -95,6 +95,8 @@ class CheckStructure(unittest.TestCase):
     def test_a_long_file_is_found(self):
         self.assertEqual(self.found({"apps/a.cpp": "\n" * 500}), [])
         self.assert_one({"apps/a.cpp": "\n" * 501}, "apps/a.cpp:500:", "501 lines")
+        self.assert_one({f"apps/a{k}.cpp": "\n" * 500 for k in range(14)} | {"apps/b.h": "#pragma once\n"}, "apps:1:",
+                        "7001 lines")
 
     def test_a_folder_with_a_meaningless_name_is_found(self):
         self.assert_one({"apps/helpers/a.cpp": "\n"}, "apps/helpers:1:", "name")

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -24,6 +25,8 @@ class TextOnDisk {
   void append(std::string text);
   /// Begins again.
   void clear();
+  /// append() as a function, for as long as this object lives; an empty text stands for clear().
+  std::function<void(std::string text)> taker();
 
  private:
   friend class ResultsFolder;

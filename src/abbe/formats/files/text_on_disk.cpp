@@ -128,6 +128,14 @@ TextOnDisk& TextOnDisk::operator=(TextOnDisk&&) noexcept = default;
 
 void TextOnDisk::append(std::string text) { writer_->append(std::move(text)); }
 void TextOnDisk::clear() { writer_->clear(); }
+
+std::function<void(std::string text)> TextOnDisk::taker() {
+  return [writer = writer_.get()](std::string text) {
+    if (text.empty()) return writer->clear();
+    writer->append(std::move(text));
+  };
+}
+
 void TextOnDisk::put_at(const fs::path& path, const fs::path& called) { writer_->put_at(path, called); }
 
 }  // namespace abbe

@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -54,9 +55,12 @@ TEST(TextOnDisk, GetsANameWithItsResults) {
 TEST(TextOnDisk, BeginsAgain) {
   const fs::path folder = test::empty_folder("abbe_text_again");
   TextOnDisk text(folder / "results");
+  const std::function<void(std::string)> take = text.taker();
   text.append("what does not count");
   text.clear();
-  text.append("what ");
+  take("nor this");
+  take("");
+  take("what ");
   text.append("counts");
   EXPECT_EQ(in_results(std::move(text), folder), "what counts");
 }
