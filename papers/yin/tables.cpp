@@ -192,7 +192,7 @@ ReproducedTable section_table(const YinSections& s) {
     std::vector<ReproducedCell> row = {i + 1, *s.sections[i].along, 1e3 * s.edge[i]};
     const bool found = fit.status == EdgeStatus::ok;
     for (const double mm : {fit.corner.x(), fit.corner_uncertainty(), fit.rounding, fit.rounding_uncertainty}) {
-      row.push_back(found ? ReproducedCell(1e3 * mm) : ReproducedCell());
+      row.emplace_back(found ? std::optional(1e3 * mm) : std::nullopt);
     }
     row.emplace_back(static_cast<std::size_t>(s.sections[i].points.cols()));
     row.emplace_back(found ? std::string() : fit.reason);

@@ -17,7 +17,7 @@ struct ChainLink {
   std::size_t nearer = Machine::npos;  ///< rotary axis towards the workpiece; npos: the link begins on the workpiece
   std::size_t farther = Machine::npos;
   Eigen::Vector3d length = Eigen::Vector3d::Zero();  ///< from end to end with the axes at zero, mm
-  std::vector<std::size_t> linear;                   ///< axes within it
+  std::vector<std::size_t> linear{};                 ///< axes within it
 };
 
 std::vector<ChainLink> links_of(const Machine& machine, const Eigen::Vector3d& fixed_point) {

@@ -39,8 +39,8 @@ struct LocationErrorsOverTime {
 struct LocationDistortion {
   WarmingRun run;
   std::vector<LocationCycle> cycles;
-  std::vector<WarmingSensor> locations;  ///< the uncertainty of a reading is the largest of its cycles
-  std::vector<double> no_change;         ///< [locations] probability of so large changes by noise alone
+  std::vector<WarmingSensor> locations{};  ///< the uncertainty of a reading is the largest of its cycles
+  std::vector<double> no_change{};         ///< [locations] probability of so large changes by noise alone
   std::vector<TimeSeries> temperatures;
   double chi_square = 0;          ///< of all cycles
   double degrees_of_freedom = 0;  ///< 0: there are none left, nothing is known of the fit

@@ -5,12 +5,14 @@
 #include <functional>
 #include <numeric>
 #include <span>
+#include <string_view>
 
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/digest.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/stopped.h"
 #include "abbe/identify/sampled_fit.h"
+#include "abbe/identify/trust/sample_moments.h"
 
 namespace abbe {
 namespace {
@@ -232,30 +234,29 @@ MonteCarloResult monte_carlo(const Problem& problem, const Identification& ident
   batches.draw_and_fit();
   const Eigen::MatrixXd& changes = batches.changes();
   set_observations(problem, estimates);
-  if (!changes.allFinite()) {
+  const auto of_changes = [&batches](std::string_view what) {
+    Digest digest;
+    digest.add_text(what);
+    digest.add(batches.fingerprint());
+    return digest;
+  };
+  const SampleMoments moments =
+      sample_moments(changes, options.threads, options.work, [&] { return of_changes("moments").value(); });
+  if (!moments.mean.allFinite()) {
     result.status = MonteCarloStatus::no_solution;
     return result;
   }
   result.samples = options.samples;
   result.not_settled = batches.not_settled();
-  const double n = static_cast<double>(options.samples);
-  const Eigen::VectorXd shift = changes.rowwise().mean();
-  result.mean = estimates + shift;
-  const Eigen::MatrixXd centred = changes.colwise() - shift;
-  result.covariance = centred * centred.transpose() / (n - 1);
-  const auto of_changes = [&batches] {
-    Digest digest;
-    digest.add_text("percentiles");
-    digest.add(batches.fingerprint());
-    return digest;
-  };
+  result.mean = estimates + moments.mean;
+  result.covariance = moments.covariance;
   QuantityFigures of_estimates(changes, nullptr, options.probabilities);
-  of_estimates.find(options, [&] { return of_changes().value(); });
+  of_estimates.find(options, [&] { return of_changes("percentiles").value(); });
   result.percentiles = of_estimates.percentiles().colwise() + estimates;
   if (prediction && prediction->rows() > 0) {
     QuantityFigures predicted(changes, prediction, options.probabilities);
     predicted.find(options, [&] {
-      Digest digest = of_changes();
+      Digest digest = of_changes("percentiles");
       digest.add_numbers({prediction->data(), static_cast<std::size_t>(prediction->size())});
       return digest.value();
     });

@@ -21,7 +21,7 @@ using ColumnsMap = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 constexpr std::size_t kBlockRows = 192;
 
 // Below this much work in one pass a second thread, or another process, costs more than it brings.
-constexpr double kWorthSharing = 2e5;
+constexpr double kWorthDividing = 2e5;
 
 }  // namespace
 
@@ -55,7 +55,7 @@ PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functi
   x_.resize(block_count());
   ahead_x_.resize(block_count());
   best_.resize(block_count());
-  if (static_cast<double>(space.first_row(n)) * static_cast<double>(v_) < kWorthSharing) {
+  if (static_cast<double>(space.first_row(n)) * static_cast<double>(v_) < kWorthDividing) {
     threads_ = 1;
   } else {
     shares_ = PlanShares(in_step, fingerprint);

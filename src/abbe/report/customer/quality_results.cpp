@@ -390,11 +390,12 @@ class QifWriter {
     const CustomerFigure& figure = report_.figures[index];
     const CustomerValue& value = figure.states[state];
     const ShownUnit& unit = *shown_unit(figure);
-    const std::optional<double> expanded = value.value ? value.expanded_uncertainty : std::nullopt;
+    const bool has_uncertainty = value.value && value.expanded_uncertainty;
     xml_.open(aspect(unit, "Measurement"), {{"id", new_id()}});
     std::vector<Attribute> attributes;
-    if (expanded) {
-      attributes = {{"D1", "ExpandedUncertainty", plain_decimal(*expanded)}, {"D1", "CoverageFactor", "2"}};
+    if (has_uncertainty) {
+      attributes = {{"D1", "ExpandedUncertainty", plain_decimal(*value.expanded_uncertainty)},
+                    {"D1", "CoverageFactor", "2"}};
       if (value.is_incomplete) attributes.push_back({"Bool", "UncertaintyIsIncomplete", "true"});
     }
     write_attributes(attributes);
@@ -406,8 +407,8 @@ class QifWriter {
     write_ids("MeasurementDeviceIds", devices_);
     if (value.value) {
       XmlWriter::Attributes of_value = unit_attribute(unit);
-      if (expanded) {
-        of_value.emplace_back("combinedUncertainty", plain_decimal(*expanded / 2));
+      if (has_uncertainty) {
+        of_value.emplace_back("combinedUncertainty", plain_decimal(*value.expanded_uncertainty / 2));
         // The values are corrected for what is known.
         of_value.emplace_back("meanError", "0");
       }

@@ -36,13 +36,18 @@ std::vector<std::size_t> determined_locations(const Problem& problem, const Iden
 Problem problem_of_cycle(const Machine& machine, const Campaign& campaign, const Identification& whole,
                          const std::vector<std::size_t>& locations,
                          const std::vector<std::vector<std::size_t>>& readings) {
-  Problem problem{.machine = machine, .errors = whole.errors, .machine_parameters = locations};
-  ReadingPoint start{.machine = whole.errors.parameters()};
+  Problem problem;
+  problem.machine = machine;
+  problem.errors = whole.errors;
+  problem.machine_parameters = locations;
+  ReadingPoint start;
+  start.machine = whole.errors.parameters();
   for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
     if (readings[s].empty()) continue;
     CampaignSetup part = campaign.setups[s];
     part.readings = part.readings.subset(readings[s]);
-    SelectedObservations selected{.observations = part.observations(machine, whole.errors)};
+    SelectedObservations selected;
+    selected.observations = part.observations(machine, whole.errors);
     std::vector<std::uint8_t> is_open(selected.observations->unknowns().size(), 1);
     for (const KnownUnknown& known : part.known_unknowns()) is_open[known.unknown] = 0;
     for (std::size_t u = 0; u < is_open.size(); ++u) {
