@@ -1,8 +1,6 @@
 #include <optional>
 #include <utility>
 
-#include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/files/text_on_disk.h"
 #include "abbe/study/scans/streamed_deviations.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
@@ -45,8 +43,7 @@ int run_deviate(const DeviateCommand& command, ProcessGroup* processes) {
                                              work.job(Progress("comparing").callback()));
   if (!work.is_first()) return kDone;
   const int code = finish_evaluation(result.report, command.options, {}, [&](ResultsFolder& results) {
-    if (result.csv_was_taken) results.write("deviation.csv", std::move(*csv));
-    for (const auto& [name, contents] : taken_deviation_files(result)) results.write(name, contents);
+    write_deviation_files(result, std::move(csv), results);
   });
   work.done();
   return result.has_points() && !result.elsewhere ? code : static_cast<int>(kNegative);

@@ -3,14 +3,15 @@
 #include <bit>
 #include <cmath>
 
+#include "abbe/geometry/mixed_bits.h"
+
 namespace abbe {
 namespace {
 
 std::uint64_t splitmix(std::uint64_t& state) {
-  std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
+  const std::uint64_t number = mixed_bits(state);
+  state += 0x9e3779b97f4a7c15U;
+  return number;
 }
 
 }  // namespace

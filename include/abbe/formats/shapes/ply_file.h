@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,11 +35,16 @@ struct PlyParts {
   Eigen::Ref<const Eigen::Matrix3Xd> points;                 ///< [3, n] mm
   Eigen::Matrix3Xd normals{};                                ///< [3, n] or [3, 0]
   Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> colours{};  ///< [3, n] red, green, blue, or [3, 0]
-  std::vector<double> deviation{};                           ///< [n] mm, written as deviation_mm, or empty
+  std::span<const double> deviation{};                       ///< [n] mm, written as deviation_mm, or empty
   Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic> triangles{};
 };
 
 /// Binary little-endian PLY with double coordinates, which read back to the same bits, and "comment unit mm".
 std::string ply_bytes(const PlyParts& parts);
+
+/// The same in pieces: what stands in front of the points, and rows of some of them.
+/// @param parts  what the points have; their number does not count @param points  number of all
+std::string ply_header(const PlyParts& parts, Eigen::Index points);
+std::string ply_rows(const PlyParts& parts);
 
 }  // namespace abbe

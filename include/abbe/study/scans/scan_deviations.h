@@ -33,6 +33,8 @@
 #include <utility>
 #include <vector>
 
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/text_on_disk.h"
 #include "abbe/formats/machine/transform_file.h"
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
@@ -98,7 +100,8 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOp
 
 /// Files of the points that count, name and contents: deviation.csv, unless it was taken, and deviation.ply (coloured).
 std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result);
-/// The same of a result that is not needed any more: large texts are not copied.
-std::vector<std::pair<std::string, std::string>> taken_deviation_files(ScanDeviations& result);
+/// Writes them, deviation.ply while it is made.
+/// @param csv  what has taken deviation.csv, if anything did @throws InputError as ResultsFolder
+void write_deviation_files(const ScanDeviations& result, std::optional<TextOnDisk> csv, ResultsFolder& results);
 
 }  // namespace abbe

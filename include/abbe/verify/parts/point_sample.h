@@ -39,7 +39,4 @@ class PointSample {
   std::vector<SampledPoint> sample_, least_, largest_;  ///< heaps; the first to go is in front
 };
 
-/// The hash: SplitMix64 (G. Steele, D. Lea, C. Flood, OOPSLA 2014, 453), in which no two numbers have the same.
-std::uint64_t hash_of_number(std::uint64_t number);
-
 }  // namespace abbe

@@ -20,6 +20,9 @@ struct SurfaceAverage {
   std::vector<std::uint32_t> count;  ///< [places] readings in the mean
 };
 
+/// Of more readings than that, about so many tell how dense they are.
+inline constexpr std::size_t kRadiusReadings = 65536;
+
 /// Radius in which there are some readings about most places: half of the occupied cubes of a grid of that edge have
 /// at least `wanted` of them; at most a tenth of the extent.
 /// @return mm; 0 if there are no readings

@@ -11,6 +11,7 @@
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/digest.h"
+#include "abbe/geometry/even_choice.h"
 #include "abbe/geometry/registration/registration_pass.h"
 #include "abbe/geometry/registration/seen_motions.h"
 #include "abbe/geometry/registration/undetermined_motions.h"
@@ -276,9 +277,7 @@ class Fit {
 /// Robust standard deviation of the distances at the start; some of very many points tell it.
 double start_scale(const Matrix3Xd& points, const ClosestPointFinder& surface, const SmoothSurface& smooth,
                    const RigidTransform& pose, const FineRegistrationOptions& options, double extent) {
-  const Index stride = std::max<Index>(1, points.cols() / kPointsForRank);
-  Matrix3Xd some(3, (points.cols() + stride - 1) / stride);
-  for (Index i = 0; i < some.cols(); ++i) some.col(i) = points.col(i * stride);
+  const Matrix3Xd some = EvenChoice(points.cols(), kPointsForRank).of(points);
   Fit fit(some, surface, smooth, options);
   fit.pass(pose, extent);
   return fit.scale();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/even_choice.h"
 #include "abbe/geometry/registration/pair_search.h"
 #include "abbe/geometry/registration/pose_difference.h"
 #include "abbe/geometry/registration/shared_fits.h"
@@ -25,13 +26,7 @@ constexpr double kRoughScale = 0.001;  ///< of the diameter: the least scale at 
 constexpr double kSettled = 0.02;      ///< of the uncertainty of a mean over all points
 constexpr double kHopeless = 0.65;     ///< of the best score: rougher starts are not refined
 
-/// Every n-th point, so that about `count` are left.
-Matrix3Xd some_of(const Matrix3Xd& points, Eigen::Index count) {
-  const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / count);
-  Matrix3Xd some(3, (points.cols() + stride - 1) / stride);
-  for (Eigen::Index i = 0; i < some.cols(); ++i) some.col(i) = points.col(i * stride);
-  return some;
-}
+Matrix3Xd some_of(const Matrix3Xd& points, Eigen::Index count) { return EvenChoice(points.cols(), count).of(points); }
 
 /// A pose with the loss of every compared point, 0 .. 1.
 struct Compared {

@@ -57,6 +57,21 @@ double error_mm(const RigidTransform& a, const RigidTransform& b, const Triangle
   return largest;
 }
 
+TEST(Registration, ARasterWhoseRowsHaveALengthOfTheirOwnIsSeenAsAWhole) {
+  // 200 rows that look alike: every 250-th of the points is one of two places, and every 40-th one of 25.
+  const TriangleMesh mesh = parts::stepped_box();
+  const PosedScan row = posed_scan_of(mesh, 500, 8, 0.01, 0, Vector3d(1, 0.3, 0.5));
+  PointCloud raster;
+  raster.points.resize(3, 200 * row.cloud.size());
+  Numbers numbers(3);
+  for (Eigen::Index i = 0; i < raster.points.cols(); ++i) {
+    raster.points.col(i) = row.cloud.points.col(i % row.cloud.size()) + 0.005 * numbers.normal3();
+  }
+  const Registration found = RegistrationTarget(mesh).register_scan(raster);
+  EXPECT_EQ(found.status, RegistrationStatus::ok);
+  EXPECT_LT(error_mm(found.fine.mesh_from_scan, row.mesh_from_scan, mesh), 0.05);
+}
+
 TEST(Registration, SharedByOthersIsTheSameToTheLastBit) {
   const TriangleMesh mesh = parts::stepped_box();
   // So many that only distances near the median are exchanged.

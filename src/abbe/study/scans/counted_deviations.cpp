@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "abbe/formats/files/file_stamp.h"
@@ -17,6 +18,7 @@
 #include "abbe/study/scans/closest_points.h"
 #include "abbe/study/scans/deviation_steps.h"
 #include "abbe/study/scans/piece_deviations.h"
+#include "abbe/study/scans/scan_density.h"
 #include "abbe/study/scans/scan_pieces.h"
 
 namespace abbe {
@@ -56,7 +58,7 @@ class CountedJob {
       : request_(request),
         scan_(scan),
         surface_(surface),
-        question_{request.largest_mm, faces.face_of_triangle, request.page},
+        question_{.largest_mm = request.largest_mm, .face_of_triangle = faces.face_of_triangle},
         job_(job),
         stamp_(file_stamp(request.scan_file)),
         file_(request.scan_file),
@@ -64,9 +66,7 @@ class CountedJob {
         pieces_(blocks_, kPointsTogether),
         found_(pieces_.count()),
         is_there_(pieces_.count()),
-        points_(about_columns()),
-        feet_(about_columns()),
-        normals_(about_columns()) {
+        points_(request.page ? static_cast<Eigen::Index>(blocks_.about_points()) : 0) {
     result_.all.reserve(blocks_.about_points());
     result_.faces.resize(faces.count());
   }
@@ -74,6 +74,7 @@ class CountedJob {
   std::optional<CountedDeviations> run() {
     // Every process finds out by the first points that a table has another form.
     if (pieces_.count() > 0) blocks_.read(blocks_.begin(), blocks_.block_end(blocks_.begin(), 1), 1);
+    if (request_.page) prepare_picture();
     NumberedWork work{.name = "comparison of the scan", .blocks = pieces_.count(), .threads = request_.threads};
     work.is_kept = false;
     work.fingerprint = [this] { return fingerprint(); };
@@ -88,18 +89,23 @@ class CountedJob {
     if (added_ < found_.size()) return std::nullopt;
     describe_scan();
     result_.points_mm = points_.taken();
-    result_.feet_mm = feet_.taken();
-    result_.normals = normals_.taken();
     return std::move(result_);
   }
 
  private:
-  Eigen::Index about_columns() const { return request_.page ? static_cast<Eigen::Index>(blocks_.about_points()) : 0; }
+  void prepare_picture() {
+    const ScanDensity density = scan_density(request_, blocks_, surface_, job_.stop);
+    result_.part = coloured_part(request_.part.mesh, density.radius_mm, request_.threads);
+    result_.colours = PlaceSums(result_.part.places.count());
+    result_.drawn.emplace(density.points);
+    question_.places = &result_.part.places;
+    question_.measured = density.points;
+  }
 
   std::uint64_t fingerprint() const {
     const RigidTransform& pose = request_.pose.transform;
     Digest digest;
-    digest.add_text(request_.page ? "deviations that count, with points" : "deviations that count");
+    digest.add_text(request_.page ? "deviations that count, with a picture" : "deviations that count");
     digest.add_text(vector_instructions());
     digest.add(digest_of_many(std::as_bytes(std::span(file_.text()))));
     digest.add(fingerprint_of_mesh(request_.part.mesh));
@@ -110,17 +116,17 @@ class CountedJob {
   }
 
   void compare(std::size_t piece) {
-    PieceDeviations& own = found_[piece];
     const RigidTransform& pose = request_.pose.transform;
-    own.reserve(pieces_.points_of_piece(), question_);
+    PieceComparison own(question_, pieces_.points_of_piece());
     for (std::size_t at = pieces_.begin(piece); at < pieces_.end(piece);) {
       const std::size_t end = std::min(blocks_.block_end(at, kPointsTogether), pieces_.end(piece));
       const CloudBlock block = blocks_.read(at, end, 1);
       const Eigen::Matrix3Xd points = (pose.rotation * block.points).colwise() + pose.translation;
-      own.counts[1] += block.not_finite;
-      if (points.cols() > 0) own.add(points, surface_.closest(points, 1, job_.stop), question_);
+      own.add_not_finite(block.not_finite);
+      if (points.cols() > 0) own.add(points, surface_.closest(points, 1, job_.stop));
       at = end;
     }
+    found_[piece] = own.taken();
   }
 
   /// Puts the pieces together as they come: while others are still compared, that takes no time of its own.
@@ -132,24 +138,24 @@ class CountedJob {
       result_.scan.left_out += own.counts[1];
       result_.beyond_border += own.counts[2];
       result_.too_far += own.counts[3];
-      result_.all.insert(result_.all.end(), own.deviation_mm.begin(), own.deviation_mm.end());
-      for (std::size_t i = 0; i < own.faces.size(); ++i) result_.faces[own.faces[i]].push_back(own.deviation_mm[i]);
-      if (question_.with_points) {
-        add_points(own);
+      if (question_.places != nullptr) {
+        add_to_picture(own);
+        std::copy(own.points.begin(), own.points.end(), points_.grow(own.deviation_mm.size()));
         add_rows(std::move(own.rows), own.deviation_mm.size());
       }
+      result_.all.insert(result_.all.end(), own.deviation_mm.begin(), own.deviation_mm.end());
+      for (std::size_t i = 0; i < own.faces.size(); ++i) result_.faces[own.faces[i]].push_back(own.deviation_mm[i]);
     }
     read_bytes_ += pieces_.end(piece) - pieces_.begin(piece);
     if (job_.progress) job_.progress(read_bytes_, blocks_.end() - blocks_.begin());
   }
 
-  void add_points(const PieceDeviations& own) {
-    const std::size_t n = own.deviation_mm.size();
-    std::copy(own.points.begin(), own.points.end(), points_.grow(n));
-    std::copy(own.feet.begin(), own.feet.end(), feet_.grow(n));
-    double* normal = normals_.grow(n);
-    for (const std::uint32_t number : own.normal_of) {
-      normal = std::copy_n(own.normals.begin() + 3 * static_cast<std::ptrdiff_t>(number), 3, normal);
+  void add_to_picture(const PieceDeviations& own) {
+    result_.drawn->append(own.drawn, result_.all.size());
+    try {
+      result_.colours.add(own.colours);
+    } catch (const std::invalid_argument& error) {
+      throw WorkError(error.what());
     }
   }
 
@@ -191,7 +197,7 @@ class CountedJob {
   std::vector<PieceDeviations> found_;  // of pieces that were not added yet
   std::vector<std::uint8_t> is_there_;
   CountedDeviations result_;
-  GrowingColumns points_, feet_, normals_;
+  GrowingColumns points_;
   std::size_t added_ = 0, read_bytes_ = 0;
   bool has_rows_ = false;
 };

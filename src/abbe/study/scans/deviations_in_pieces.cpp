@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "abbe/formats/files/text_file.h"
@@ -42,15 +41,6 @@ bool fits_into_pieces(const std::string& scan_file) {
   return point_cloud_kind(file.text(), scan_file).in_blocks;
 }
 
-/// The page of deviations; they are in the result.
-nlohmann::json page_of(const ScanDeviationsRequest& request, CountedDeviations& counted, ScanDeviations& result) {
-  SurfaceReadings readings{std::move(counted.feet_mm), std::move(counted.normals),
-                           std::move(result.compared.counted_mm)};
-  nlohmann::json page = deviation_page(request.part.mesh, readings, counted.points, result.colour_mm, request.threads);
-  result.compared.counted_mm = std::move(readings.deviation_mm);
-  return page;
-}
-
 /// @throws InputError
 ScanDeviations compared_in_pieces(const ScanDeviationsRequest& request, const PointCloudOptions& scan,
                                   const JobOptions& job) {
@@ -80,7 +70,8 @@ ScanDeviations compared_in_pieces(const ScanDeviationsRequest& request, const Po
   apply_tolerances(request.tolerances, result.report);
   if (!request.page) return result;
   stop_if_asked(job.stop);
-  result.report.page = page_of(request, *counted, result);
+  result.report.page = deviation_page(counted->part, counted->colours, *counted->drawn, counted->points,
+                                      result.compared.counted_mm, result.colour_mm);
   result.compared.counted_points = std::move(counted->points_mm);
   result.csv = std::move(counted->csv);
   result.csv_was_taken = request.take_csv && result.has_points();

@@ -1,19 +1,27 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <sstream>
+#include <utility>
 
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/text_on_disk.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/report/drawings/drawn_readings.h"
 #include "abbe/report/evaluations/evaluation_report.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/scans/piece_deviations.h"
+#include "abbe/study/scans/scan_density.h"
 #include "abbe/study/scans/streamed_deviations.h"
 
 namespace abbe {
@@ -32,7 +40,7 @@ class DeviationsInPieces : public testing::Test {
     const PointCloud one = read_point_cloud(examples + "bracket-scan.csv").cloud;
     std::mt19937_64 engine(5);
     std::normal_distribution<double> shift(0, 0.02);
-    constexpr Eigen::Index kCopies = 20;
+    constexpr Eigen::Index kCopies = 15;
     cloud_.points.resize(3, kCopies * one.size());
     for (Eigen::Index k = 0; k < kCopies; ++k) {
       const Eigen::Vector3d moved(shift(engine), shift(engine), shift(engine));
@@ -51,6 +59,11 @@ class DeviationsInPieces : public testing::Test {
   void write(const std::string& name, const std::string& contents) {
     request_.scan_file = (folder_ / name).string();
     std::ofstream(request_.scan_file, std::ios::binary) << contents;
+  }
+
+  static std::string read(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
   }
 
   std::string pcd() const {
@@ -115,17 +128,37 @@ TEST_F(DeviationsInPieces, HaveTheBytesOfTheScanAsAWholeInEveryFormat) {
   }
 }
 
-TEST_F(DeviationsInPieces, HaveTheSameFacesAndFilesThatAreTaken) {
+TEST_F(DeviationsInPieces, HaveTheSameFaces) {
   write("scan.ply", ply_bytes({.points = cloud_.points}));
   request_.faces = DeviationFaces::by_edges;
   request_.crease = 30 * kDegree;
-  ScanDeviations result = deviations_of_file(request_, {}, {}, {.work = work_backwards});
-  EXPECT_EQ(bytes_of(result), as_a_whole());
-  const auto copied = deviation_files(result);
-  EXPECT_EQ(taken_deviation_files(result), copied);
+  EXPECT_EQ(bytes_of(deviations_of_file(request_, {}, {}, {.work = work_backwards})), as_a_whole());
 }
 
-TEST_F(DeviationsInPieces, HaveTheSameRowsWhereTheyAreTakenMeanwhile) {
+TEST_F(DeviationsInPieces, HaveTheSameFilesWhereTheyAreWrittenMeanwhile) {
+  write("scan.ply", ply_bytes({.points = cloud_.points}));
+  request_.scan = read_point_cloud(request_.scan_file);
+  const auto whole = deviation_files(find_deviations(request_));
+  int number = 0;
+  for (const bool is_taken : {false, true}) {
+    for (const bool backwards : {false, true}) {
+      const fs::path folder = folder_ / ("results" + std::to_string(++number));
+      std::optional<TextOnDisk> csv;
+      if (is_taken) request_.take_csv = csv.emplace(folder).taker();
+      JobOptions job;
+      if (backwards) job.work = work_backwards;
+      const ScanDeviations result = deviations_of_file(request_, {}, {}, job);
+      EXPECT_EQ(result.csv_was_taken, is_taken);
+      ResultsFolder results(folder);
+      write_deviation_files(result, std::move(csv), results);
+      results.commit();
+      ASSERT_EQ(whole.size(), 2U);
+      for (const auto& [name, contents] : whole) EXPECT_EQ(read(folder / name), contents) << name;
+    }
+  }
+}
+
+TEST_F(DeviationsInPieces, RowsAreTakenPieceByPiece) {
   write("scan.ply", ply_bytes({.points = cloud_.points}));
   std::string taken;
   int times = 0;
@@ -133,21 +166,11 @@ TEST_F(DeviationsInPieces, HaveTheSameRowsWhereTheyAreTakenMeanwhile) {
     taken += text;
     ++times;
   };
-  for (const bool backwards : {false, true}) {
-    taken.clear();
-    JobOptions job;
-    if (backwards) job.work = work_backwards;
-    ScanDeviations result = deviations_of_file(request_, {}, {}, job);
-    EXPECT_TRUE(result.csv_was_taken);
-    const auto files = taken_deviation_files(result);
-    ASSERT_EQ(files.size(), 1U);
-    request_.scan = read_point_cloud(request_.scan_file);
-    const auto all = deviation_files(find_deviations(request_));
-    ASSERT_EQ(all.size(), 2U);
-    EXPECT_EQ(taken, all[0].second);
-    EXPECT_EQ(files[0], all[1]);
-  }
-  EXPECT_GT(times, 10);
+  const ScanDeviations result = deviations_of_file(request_, {}, {}, {.work = work_backwards});
+  EXPECT_EQ(deviation_files(result).size(), 1U);
+  EXPECT_GT(times, 3);
+  request_.scan = read_point_cloud(request_.scan_file);
+  EXPECT_EQ(taken, deviation_files(find_deviations(request_)).front().second);
 }
 
 TEST_F(DeviationsInPieces, RowsThatWereTakenInVainAreTakenBack) {
@@ -169,25 +192,86 @@ TEST_F(DeviationsInPieces, OfPointsThatAllAreTooFarAreThoseOfTheScanAsAWhole) {
   EXPECT_EQ(bytes_of(result), as_a_whole());
 }
 
+TEST_F(DeviationsInPieces, OfALongScanThePictureHasAboutTheSameColours) {
+  // More points than tell how dense they are, and than are drawn: pieces and the whole choose others.
+  const Eigen::Index n = cloud_.size();
+  Eigen::Matrix3Xd many(3, 4 * n);
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    many.middleCols(k * n, n) = cloud_.points.array() + 1e-4 * static_cast<double>(k);
+  }
+  write("scan.ply", ply_bytes({.points = many}));
+  const ScanDeviations pieces = deviations_of_file(request_, {});
+  EXPECT_EQ(bytes_of(deviations_of_file(request_, {}, {}, {.work = work_backwards})), bytes_of(pieces));
+  request_.scan = read_point_cloud(request_.scan_file);
+  const ScanDeviations whole = find_deviations(request_);
+  EXPECT_EQ(evaluation_json(pieces.report), evaluation_json(whole.report));
+  EXPECT_EQ(deviation_files(pieces), deviation_files(whole));
+  EXPECT_EQ(pieces.report.page.at("histograms"), whole.report.page.at("histograms"));
+  const nlohmann::json& own = pieces.report.page.at("surface");
+  const nlohmann::json& other = whole.report.page.at("surface");
+  const double radius = own.at("averaging_radius_mm");
+  EXPECT_NEAR(radius / other.at("averaging_radius_mm").get<double>(), 1, 0.2);
+  for (const nlohmann::json* surface : {&own, &other}) {
+    EXPECT_EQ(surface->at("points").at("measured"), 4 * n);
+    EXPECT_LE(surface->at("points").at("drawn"), kPointsDrawn);
+    EXPECT_GE(surface->at("points").at("drawn"), kPointsDrawn / 3);
+  }
+}
+
+TEST_F(DeviationsInPieces, HowDenseALongScanLiesDoesNotDependOnTheFormat) {
+  Eigen::Matrix3Xd many(3, 3 * cloud_.size());
+  many << cloud_.points, cloud_.points, cloud_.points;
+  const auto density_of = [&](const std::string& name, const std::string& contents) {
+    write(name, contents);
+    const PointCloudBlocks blocks(contents, name);
+    return scan_density(request_, blocks, ClosestPointFinder(request_.part.mesh, 1), {});
+  };
+  const ScanDensity exact = density_of("scan.ply", ply_bytes({.points = many}));
+  EXPECT_EQ(exact.points, static_cast<std::size_t>(many.cols()));
+  std::string xyz = point_cloud_csv({many, {}});
+  xyz.erase(0, xyz.find('\n') + 1);
+  std::replace(xyz.begin(), xyz.end(), ',', ' ');
+  for (const auto& [name, contents] :
+       {std::pair("scan.csv", point_cloud_csv({many, {}})), std::pair("scan.xyz", xyz)}) {
+    const ScanDensity about = density_of(name, contents);
+    EXPECT_NEAR(static_cast<double>(about.points) / static_cast<double>(many.cols()), 1, 0.02) << name;
+    EXPECT_NEAR(about.radius_mm / exact.radius_mm, 1, 0.15) << name;
+  }
+  // Three times as many points: about a place there are as many within a smaller radius.
+  const ScanDensity third = density_of("scan.ply", ply_bytes({.points = cloud_.points}));
+  EXPECT_NEAR(third.radius_mm / exact.radius_mm, std::sqrt(3.0), 0.35);
+}
+
 TEST(PieceDeviations, RefuseBytesThatDoNotFitTogether) {
-  PieceDeviations piece;
+  const AveragedPlaces places(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d::UnitZ(), 1);
+  const PieceQuestion question{.places = &places, .measured = 1};
+  PieceComparison comparison(question, 1);
   SurfacePoint foot{.point = Eigen::Vector3d(1, 2, 3), .distance = 0.5, .normal = Eigen::Vector3d::UnitZ()};
-  piece.add(Eigen::Vector3d(1, 2, 3.5), std::span(&foot, 1), {.with_points = true});
+  comparison.add(Eigen::Vector3d(1, 2, 3.5), std::span(&foot, 1));
+  PieceDeviations piece = comparison.taken();
   EXPECT_EQ(piece.rows, "1,2,3.5,0.5\n");
   std::vector<std::byte> bytes;
   piece.pack(bytes);
   PieceDeviations same;
   same.unpack(bytes);
-  EXPECT_EQ(same.feet, piece.feet);
+  EXPECT_EQ(same.colours, piece.colours);
+  EXPECT_EQ(same.colours.size(), 1U);
   EXPECT_EQ(same.rows, piece.rows);
-  piece.normal_of[0] = 1;
-  bytes.clear();
-  piece.pack(bytes);
-  EXPECT_THROW(same.unpack(bytes), WorkError);
-  piece.normal_of = {0, 0};
-  bytes.clear();
-  piece.pack(bytes);
-  EXPECT_THROW(same.unpack(bytes), WorkError);
+  const auto expect_refused = [](const PieceDeviations& wrong) {
+    std::vector<std::byte> packed;
+    wrong.pack(packed);
+    PieceDeviations any;
+    EXPECT_THROW(any.unpack(packed), WorkError);
+  };
+  PieceDeviations wrong = piece;
+  wrong.drawn[0].number = 1;
+  expect_refused(wrong);
+  wrong = piece;
+  wrong.points.push_back(0);
+  expect_refused(wrong);
+  wrong = piece;
+  wrong.faces = {0, 0};
+  expect_refused(wrong);
 }
 
 }  // namespace

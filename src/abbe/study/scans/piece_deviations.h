@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "abbe/geometry/surface/closest_point.h"
+#include "abbe/report/drawings/drawn_readings.h"
+#include "abbe/verify/parts/averaged_places.h"
 
 namespace abbe {
 
@@ -17,7 +19,9 @@ namespace abbe {
 struct PieceQuestion {
   double largest_mm = 0;                                 ///< points farther away do not count; 0: all do
   std::span<const std::uint32_t> face_of_triangle = {};  ///< empty: no faces
-  bool with_points = false;                              ///< for files and a picture, too
+  /// For files and a picture: the places of its colours; null: there are none. They outlive the question.
+  const AveragedPlaces* places = nullptr;
+  std::size_t measured = 0;  ///< points of the scan, about
 };
 
 /// The points of one piece that count, in the order of the scan.
@@ -25,26 +29,35 @@ struct PieceDeviations {
   std::array<std::uint64_t, 4> counts{};  ///< points, not finite, beyond the border, too far
   std::vector<double> deviation_mm;       ///< [n]
   std::vector<std::uint32_t> faces;       ///< [n], or empty
-  // With points only:
-  std::vector<double> points, feet;      ///< [3 n] mm, and on the part
-  std::vector<double> normals;           ///< [3 k] of the part there: few of them are different
-  std::vector<std::uint32_t> normal_of;  ///< [n]
-  std::string rows;                      ///< of deviation.csv
-
-  /// Room for about so many points, so that nothing is copied as they come.
-  void reserve(std::size_t about, const PieceQuestion& question);
-  /// @param points   [3, m] mm, frame of the part @param closest  [m] on the part
-  void add(const Eigen::Matrix3Xd& points, std::span<const SurfacePoint> closest, const PieceQuestion& question);
+  // For files and a picture only:
+  std::vector<double> points;             ///< [3 n] mm
+  std::string rows;                       ///< of deviation.csv
+  std::vector<PlaceSums::Entry> colours;  ///< sums of the places
+  std::vector<DrawnReading> drawn;        ///< numbers within the piece
 
   /// As bytes: the counts and deviations, and what else there is.
   void pack(std::vector<std::byte>& bytes) const;
   /// @throws WorkError if the bytes are not of a piece
   void unpack(std::span<const std::byte> bytes);
+};
+
+/// Finds them, from blocks of points in their order.
+class PieceComparison {
+ public:
+  /// @param about  number of the points
+  PieceComparison(const PieceQuestion& question, std::size_t about);
+
+  /// @param points   [3, m] mm, frame of the part @param closest  [m] on the part
+  void add(const Eigen::Matrix3Xd& points, std::span<const SurfacePoint> closest);
+  void add_not_finite(std::size_t count) { found_.counts[1] += count; }
+  /// Ends the piece.
+  PieceDeviations taken();
 
  private:
-  std::uint32_t number_of_normal(const Eigen::Vector3d& normal);
-
-  std::vector<std::uint32_t> recent_normals_{};  // by some of their bits
+  const PieceQuestion& question_;
+  PieceDeviations found_;
+  PlaceSums sums_;
+  DrawnReadings drawn_;
 };
 
 }  // namespace abbe

@@ -5,6 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
+#include <utility>
 
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/text/input_error.h"
@@ -101,33 +104,47 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request, const JobOp
 
 namespace {
 
-std::string coloured_points(const ScanDeviations& result) {
+/// deviation.ply, in pieces.
+void take_coloured_points(const ScanDeviations& result, const std::function<void(std::string)>& take) {
+  constexpr Eigen::Index kTogether = 16384;
   const ScanComparison& compared = result.compared;
-  return ply_bytes({.points = compared.counted_points,
-                    .colours = deviation_colours(compared.counted_mm, result.colour_mm),
-                    .deviation = compared.counted_mm});
+  const Eigen::Index n = compared.counted_points.cols();
+  for (Eigen::Index first = 0; first == 0 || first < n; first += kTogether) {
+    const Eigen::Index count = std::min(kTogether, n - first);
+    const auto deviation =
+        std::span(compared.counted_mm).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+    const PlyParts some{.points = compared.counted_points.middleCols(first, count),
+                        .colours = deviation_colours(deviation, result.colour_mm),
+                        .deviation = deviation};
+    if (first == 0) take(ply_header(some, n));
+    take(ply_rows(some));
+  }
+}
+
+std::string csv_of(const ScanDeviations& result) {
+  return result.csv.empty() ? point_cloud_csv({result.compared.counted_points, {}}, result.compared.counted_mm)
+                            : result.csv;
 }
 
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result) {
-  const ScanComparison& compared = result.compared;
   std::vector<std::pair<std::string, std::string>> files;
-  if (!result.csv_was_taken) {
-    files.emplace_back("deviation.csv", result.csv.empty()
-                                            ? point_cloud_csv({compared.counted_points, {}}, compared.counted_mm)
-                                            : result.csv);
-  }
-  files.emplace_back("deviation.ply", coloured_points(result));
+  if (!result.csv_was_taken) files.emplace_back("deviation.csv", csv_of(result));
+  files.emplace_back("deviation.ply", "");
+  take_coloured_points(result, [&](const std::string& some) { files.back().second += some; });
   return files;
 }
 
-std::vector<std::pair<std::string, std::string>> taken_deviation_files(ScanDeviations& result) {
-  if (result.csv.empty()) return deviation_files(result);
-  std::vector<std::pair<std::string, std::string>> files;
-  files.emplace_back("deviation.csv", std::move(result.csv));
-  files.emplace_back("deviation.ply", coloured_points(result));
-  return files;
+void write_deviation_files(const ScanDeviations& result, std::optional<TextOnDisk> csv, ResultsFolder& results) {
+  if (!result.csv_was_taken) {
+    results.write("deviation.csv", csv_of(result));
+  } else if (csv) {
+    results.write("deviation.csv", std::move(*csv));
+  }
+  TextOnDisk points(results.name());
+  take_coloured_points(result, points.taker());
+  results.write("deviation.ply", std::move(points));
 }
 
 }  // namespace abbe

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "abbe/geometry/mixed_bits.h"
+
 namespace abbe {
 namespace {
 
 // What "comes first" stays longest; the heap has the last one in front.
-bool hash_first(const SampledPoint& a, const SampledPoint& b) {
-  return hash_of_number(a.number) < hash_of_number(b.number);
-}
+bool hash_first(const SampledPoint& a, const SampledPoint& b) { return mixed_bits(a.number) < mixed_bits(b.number); }
 bool least_first(const SampledPoint& a, const SampledPoint& b) {
   return a.deviation_mm != b.deviation_mm ? a.deviation_mm < b.deviation_mm : a.number < b.number;
 }
@@ -30,17 +30,10 @@ void keep_sampled(const SampledPoint& point, std::size_t most, const First& firs
 
 }  // namespace
 
-std::uint64_t hash_of_number(std::uint64_t number) {
-  std::uint64_t z = number + 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31U);
-}
-
 bool PointSample::wants(std::uint64_t number, double deviation_mm) const {
   if (sample_.size() < most_ || least_.size() < kExtremes) return true;
   return deviation_mm <= least_.front().deviation_mm || deviation_mm >= largest_.front().deviation_mm ||
-         (most_ > 0 && hash_of_number(number) < hash_of_number(sample_.front().number));
+         (most_ > 0 && mixed_bits(number) < mixed_bits(sample_.front().number));
 }
 
 bool PointSample::keeps(const SampledPoint& point) const {
