@@ -34,7 +34,7 @@ std::string file_name(const std::string& part) {
 
 std::string points_ply(const LiuDeviation& deviation) {
   PlyParts parts{deviation.registered_points};
-  parts.deviation.assign(deviation.distances.begin(), deviation.distances.end());
+  parts.deviation = {deviation.distances.data(), static_cast<std::size_t>(deviation.distances.size())};
   return ply_bytes(parts);
 }
 

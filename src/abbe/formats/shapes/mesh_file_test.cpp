@@ -6,7 +6,9 @@
 #include <bit>
 #include <cstring>
 #include <random>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "abbe/formats/files/temporary_file_for_test.h"
 #include "abbe/formats/files/text_file.h"
@@ -194,7 +196,8 @@ TEST(PlyFile, ColoursAndDeviationsStandBesideThePoints) {
   parts.normals = Eigen::Matrix3Xd::Zero(3, 8);
   parts.normals.row(1).setOnes();
   parts.colours.setConstant(3, 8, std::uint8_t{200});
-  parts.deviation.assign(8, -0.0125);
+  const std::vector<double> deviations(8, -0.0125);
+  parts.deviation = deviations;
   parts.triangles = block.triangles;
   const std::string bytes = ply_bytes(parts);
   EXPECT_NE(bytes.find("property uchar red\nproperty uchar green\nproperty uchar blue\nproperty double deviation_mm\n"),
@@ -208,6 +211,21 @@ TEST(PlyFile, ColoursAndDeviationsStandBesideThePoints) {
   EXPECT_EQ(back.points, block.vertices);
   EXPECT_EQ(back.normals, parts.normals);
   EXPECT_EQ(back.triangles, block.triangles);
+}
+
+TEST(PlyFile, InPiecesItHasTheSameBytes) {
+  const TriangleMesh block = block_for_test(kLower, kUpper);
+  const std::vector<double> deviations = {1, 2, 3, 4, 5, 6, 7, 8};
+  PlyParts all{block.vertices};
+  all.colours = Eigen::Matrix<std::uint8_t, 3, 8>::Constant(7);
+  all.deviation = deviations;
+  const Eigen::Matrix3Xd first = block.vertices.leftCols(3), others = block.vertices.rightCols(5);
+  PlyParts one{first}, two{others};
+  one.colours = all.colours.leftCols(3);
+  two.colours = all.colours.rightCols(5);
+  one.deviation = std::span(deviations).first(3);
+  two.deviation = std::span(deviations).last(5);
+  EXPECT_EQ(ply_header(one, 8) + ply_rows(one) + ply_rows(two), ply_bytes(all));
 }
 
 template <typename T>

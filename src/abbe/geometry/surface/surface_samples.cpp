@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/even_choice.h"
 
 namespace abbe {
 namespace {
@@ -35,8 +36,10 @@ class Cells {
     }
   };
 
-  Cells(const Eigen::Matrix3Xd& points, Eigen::Index stride, double size) : size_(size) {
-    for (Eigen::Index i = 0; i < points.cols(); i += stride) entries_.push_back({key(points.col(i)), i});
+  /// @param count  of the points, about
+  Cells(const Eigen::Matrix3Xd& points, Eigen::Index count, double size) : size_(size) {
+    const EvenChoice some(points.cols(), count);
+    for (Eigen::Index k = 0; k < some.size(); ++k) entries_.push_back({key(points.col(some[k])), some[k]});
     sort();
   }
 
@@ -157,8 +160,7 @@ PointCloud sample_surface(const TriangleMesh& mesh, Eigen::Index count, std::uin
 ThinnedScan thin_scan(const PointCloud& cloud, double cell) {
   ThinnedScan result;
   result.outwards = cloud.has_normals();
-  const Eigen::Index stride = std::max<Eigen::Index>(1, cloud.size() / kMostPoints);
-  const Cells cells(cloud.points, stride, cell);
+  const Cells cells(cloud.points, kMostPoints, cell);
   std::vector<Vector3d> places, points, normals;
   const std::vector<Cells::Entry>& entries = cells.entries();
   for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "abbe/geometry/best_fit_transform.h"
+#include "abbe/geometry/even_choice.h"
 
 namespace abbe {
 namespace {
 
-constexpr std::size_t kMostReadings = 300;
+constexpr Eigen::Index kMostReadings = 300;  // about
 constexpr int kMostSteps = 200;
 constexpr double kSettled = 1e-7;  // of the distance, from step to step
 
@@ -26,9 +27,10 @@ std::vector<std::size_t> chosen_readings(const TrackerReadings& readings) {
   for (std::size_t i = 0; i < readings.count(); ++i) {
     if (readings.station[i] == readings.station[0]) of_station.push_back(i);
   }
-  const std::size_t count = std::min(of_station.size(), kMostReadings);
+  // Reflectors may take turns: every n-th reading could be of the same one.
+  const EvenChoice some(static_cast<Eigen::Index>(of_station.size()), kMostReadings);
   std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(of_station[i * of_station.size() / count]);
+  for (Eigen::Index k = 0; k < some.size(); ++k) chosen.push_back(of_station[static_cast<std::size_t>(some[k])]);
   return chosen;
 }
 

@@ -174,9 +174,12 @@ TEST_F(DeviationsInPieces, RowsAreTakenPieceByPiece) {
 }
 
 TEST_F(DeviationsInPieces, RowsThatWereTakenInVainAreTakenBack) {
-  // The last piece is no table of points; a reader of whole files says so. One thread: the other pieces come first.
+  // In the last piece a row is no point, and is not among those that are looked at before. A reader of whole files says
+  // so. One thread: the other pieces come first.
   request_.threads = 1;
-  write("scan.csv", point_cloud_csv(cloud_) + "1,2,three\n");
+  Eigen::Matrix3Xd many(3, 4 * cloud_.size());
+  many << cloud_.points, cloud_.points, cloud_.points, cloud_.points;
+  write("scan.csv", point_cloud_csv({many, {}}) + "1,2,three\n1,2,3\n1,2,3\n1,2,3\n");
   std::vector<std::string> taken;
   request_.take_csv = [&](const std::string& text) { taken.push_back(text); };
   EXPECT_THROW(deviations_of_file(request_, {}), InputError);
