@@ -12,6 +12,7 @@
 #include "abbe/formats/shapes/deviation_rows.h"
 #include "abbe/formats/shapes/point_cloud_blocks.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/bounding_box.h"
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/digest.h"
 #include "abbe/geometry/numbered_work.h"
@@ -26,6 +27,7 @@ namespace {
 
 /// Points that are read and searched together: they stay in the cache of a processor.
 constexpr std::size_t kPointsTogether = 8192;
+constexpr double kRadiusOfFew = 0.01;  // of the diagonal of the part
 
 /// A matrix of three rows that grows by columns. The expected number of columns is only an estimate.
 class GrowingColumns {
@@ -95,7 +97,11 @@ class CountedJob {
  private:
   void prepare_picture() {
     const ScanDensity density = scan_density(request_, blocks_, surface_, job_.stop);
-    result_.part = coloured_part(request_.part.mesh, density.radius_mm, request_.threads);
+    // If none of these points counts, only a few of all do.
+    const double dense = density.radius_mm > 0
+                             ? density.radius_mm
+                             : kRadiusOfFew * bounding_box(request_.part.mesh.vertices).diagonal().norm();
+    result_.part = coloured_part(request_.part.mesh, dense, request_.threads);
     result_.colours = PlaceSums(result_.part.places.count());
     result_.drawn.emplace(density.points);
     question_.places = &result_.part.places;

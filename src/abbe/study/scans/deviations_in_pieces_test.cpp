@@ -17,6 +17,7 @@
 #include "abbe/formats/files/text_on_disk.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/even_choice.h"
 #include "abbe/report/drawings/drawn_readings.h"
 #include "abbe/report/evaluations/evaluation_report.h"
 #include "abbe/report/words/evaluation_text.h"
@@ -219,6 +220,19 @@ TEST_F(DeviationsInPieces, OfALongScanThePictureHasAboutTheSameColours) {
     EXPECT_LE(surface->at("points").at("drawn"), kPointsDrawn);
     EXPECT_GE(surface->at("points").at("drawn"), kPointsDrawn / 3);
   }
+}
+
+TEST_F(DeviationsInPieces, IfNoneOfThePointsThatAreLookedAtBeforeCountsThePageShowsThoseThatDo) {
+  Eigen::Matrix3Xd far = Eigen::Matrix3Xd::Constant(3, 60000, 1000.0);
+  const Eigen::Index group = 1000, other = 1 - static_cast<Eigen::Index>(chosen_of_group(1000, 2));
+  far.col(2 * group + other) = Eigen::Vector3d(20, 15, 0.001);
+  request_.pose = {};
+  write("scan.ply", ply_bytes({.points = far}));
+  const ScanDeviations result = deviations_of_file(request_, {});
+  ASSERT_EQ(result.compared.counted_mm.size(), 1U);
+  const nlohmann::json& surface = result.report.page.at("surface");
+  EXPECT_EQ(surface.at("points").at("drawn"), 1);
+  EXPECT_GT(surface.at("averaging_radius_mm"), 0.1);
 }
 
 TEST_F(DeviationsInPieces, HowDenseALongScanLiesDoesNotDependOnTheFormat) {
