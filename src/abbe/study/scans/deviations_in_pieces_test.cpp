@@ -223,7 +223,7 @@ TEST_F(DeviationsInPieces, OfALongScanThePictureHasAboutTheSameColours) {
 }
 
 TEST_F(DeviationsInPieces, IfNoneOfThePointsThatAreLookedAtBeforeCountsThePageShowsThoseThatDo) {
-  Eigen::Matrix3Xd far = Eigen::Matrix3Xd::Constant(3, 60000, 1000.0);
+  Eigen::Matrix3Xd far = Eigen::Matrix3Xd::Constant(3, 120000, 1000.0);
   const Eigen::Index group = 1000, other = 1 - static_cast<Eigen::Index>(chosen_of_group(1000, 2));
   far.col(2 * group + other) = Eigen::Vector3d(20, 15, 0.001);
   request_.pose = {};
