@@ -10,7 +10,7 @@
 namespace abbe {
 
 /// Which one of `every` consecutive things is chosen, 0 .. every - 1: as if at random, always the same. Every n-th
-/// would be in the same place of each row where the rows of a scan have a length of their own.
+/// could be in the same place of each row of a raster.
 constexpr std::uint64_t chosen_of_group(std::uint64_t group, std::uint64_t every) {
   return every <= 1 ? 0 : mixed_bits(group) % every;
 }

@@ -15,10 +15,11 @@ namespace abbe {
 /// What a page draws at most, so that it stays below its size with a scan of a million points.
 inline constexpr std::size_t kPointsDrawn = 40000;
 
+/// As it is sent: without gaps between its members.
 struct DrawnReading {
-  std::uint64_t number = 0;   ///< its place among the readings
-  std::uint64_t is_even = 0;  ///< 1: one of each few; 0: for its amount alone
-  std::array<double, 3> foot{}, normal{};
+  std::uint64_t number = 0;                ///< its place among the readings
+  std::uint64_t is_of_group = 0;           ///< 1: chosen of its group; 0: for its amount alone
+  std::array<double, 3> foot{}, normal{};  ///< mm, closest point of the part; unit, of the part there
   double deviation_mm = 0;
 };
 
@@ -41,7 +42,7 @@ class DrawnReadings {
   void keep_if_large(const DrawnReading& reading);
 
   std::uint64_t every_, next_ = 0;
-  std::vector<DrawnReading> even_;
+  std::vector<DrawnReading> of_groups_;
   std::vector<DrawnReading> largest_;  // a heap, whose first one is the least
 };
 

@@ -26,7 +26,7 @@ class PlaceSums {
   PlaceSums() = default;
   explicit PlaceSums(std::size_t places) : sums_(places) {}
 
-  /// @param deviation_mm  of at most 2^30 mm
+  /// @param deviation_mm  amounts above 2^30 mm count as that
   void add(std::size_t place, double deviation_mm);
   void add(const PlaceSums& others);
   /// @throws std::invalid_argument  a place that does not exist

@@ -57,7 +57,7 @@ double error_mm(const RigidTransform& a, const RigidTransform& b, const Triangle
   return largest;
 }
 
-TEST(Registration, ARasterWhoseRowsHaveALengthOfTheirOwnIsSeenAsAWhole) {
+TEST(Registration, ARasterIsSeenAsAWhole) {
   // 200 rows that look alike: every 250-th of the points is one of two places, and every 40-th one of 25.
   const TriangleMesh mesh = parts::stepped_box();
   const PosedScan row = posed_scan_of(mesh, 500, 8, 0.01, 0, Vector3d(1, 0.3, 0.5));

@@ -16,7 +16,7 @@ struct SampleMoments {
 
 /// Moments of blocks of samples, combined in their order: as exact as with the mean of all samples, which is not needed
 /// before. Source: Chan, Golub and LeVeque, Algorithms for computing the sample variance, The American Statistician 37
-/// (1983), equation 2.1.
+/// (1983) 242.
 /// @param samples      [p, n], n >= 2, the same in every process
 /// @param threads      as NumberedWork::threads
 /// @param fingerprint  of what the samples depend on

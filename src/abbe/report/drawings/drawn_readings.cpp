@@ -36,16 +36,16 @@ void DrawnReadings::keep_if_large(const DrawnReading& reading) {
 }
 
 void DrawnReadings::add(const Eigen::Vector3d& foot, const Eigen::Vector3d& normal, double deviation_mm) {
-  const bool is_even = next_ % every_ == chosen_of_group(next_ / every_, every_);
+  const bool is_of_group = next_ % every_ == chosen_of_group(next_ / every_, every_);
   const bool may_be_large =
       largest_.size() < kLargest || std::abs(deviation_mm) > std::abs(largest_.front().deviation_mm);
-  if (is_even || may_be_large) {
+  if (is_of_group || may_be_large) {
     const DrawnReading reading{.number = next_,
-                               .is_even = is_even ? 1U : 0U,
+                               .is_of_group = is_of_group ? 1U : 0U,
                                .foot = {foot.x(), foot.y(), foot.z()},
                                .normal = {normal.x(), normal.y(), normal.z()},
                                .deviation_mm = deviation_mm};
-    if (is_even) even_.push_back(reading);
+    if (is_of_group) of_groups_.push_back(reading);
     keep_if_large(reading);
   }
   ++next_;
@@ -54,15 +54,15 @@ void DrawnReadings::add(const Eigen::Vector3d& foot, const Eigen::Vector3d& norm
 void DrawnReadings::append(std::span<const DrawnReading> piece, std::uint64_t before) {
   for (DrawnReading reading : piece) {
     reading.number += before;
-    if (reading.is_even != 0) even_.push_back(reading);
+    if (reading.is_of_group != 0) of_groups_.push_back(reading);
     keep_if_large(reading);
   }
 }
 
 std::vector<DrawnReading> DrawnReadings::chosen() const {
-  std::vector<DrawnReading> all = even_;
+  std::vector<DrawnReading> all = of_groups_;
   for (const DrawnReading& reading : largest_) {
-    if (reading.is_even == 0) all.push_back(reading);
+    if (reading.is_of_group == 0) all.push_back(reading);
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
   return all;

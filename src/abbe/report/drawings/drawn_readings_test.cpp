@@ -59,7 +59,7 @@ TEST(DrawnReadings, OfManyTheLargestAreDrawnAndOneOfEachFew) {
       numbers.insert(reading.number);
       ASSERT_EQ(reading.deviation_mm, values[reading.number]);
       ASSERT_EQ(reading.foot[0], static_cast<double>(reading.number));
-      even += reading.is_even;
+      even += reading.is_of_group;
     }
     for (std::size_t k = 0; k < 200; ++k) EXPECT_TRUE(numbers.contains(order[k])) << size << ", " << k;
     EXPECT_GE(even + 200, found.size());
@@ -70,7 +70,7 @@ TEST(DrawnReadings, OfEqualAmountsTheFirstOnesAreDrawn) {
   const std::vector<double> values(100000, 0.25);
   std::vector<std::uint64_t> by_amount;
   for (const DrawnReading& reading : drawn_in_pieces(values, 10000).chosen()) {
-    if (reading.is_even == 0) by_amount.push_back(reading.number);
+    if (reading.is_of_group == 0) by_amount.push_back(reading.number);
   }
   ASSERT_FALSE(by_amount.empty());
   EXPECT_LT(by_amount.back(), 200U);

@@ -15,7 +15,8 @@ struct ScanDensity {
   double radius_mm = 0;    ///< radius_of_readings() of those that count, about; 0: none does
 };
 
-/// Compares about kRadiusReadings of the points, from all of the file; of fewer, all. The same in every process.
+/// Compares at most kRadiusReadings of the points, about, from all of the file; of fewer, all. The same in every
+/// process.
 /// @throws InputError as PointCloudBlocks::read(); Stopped
 ScanDensity scan_density(const ScanDeviationsRequest& request, const PointCloudBlocks& blocks,
                          const ClosestPointFinder& surface, const std::stop_token& stop);

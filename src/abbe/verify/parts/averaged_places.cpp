@@ -15,8 +15,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kMultiplesPerMm = 0x1p60;
-constexpr double kSameSide = 0.5;  // cosine of 60 degrees
+constexpr double kMultiplesPerMm = 0x1p60, kMostMultiples = 0x1p90;  // of which there is room for 2^32
+constexpr double kSameSide = 0.5;                                    // cosine of 60 degrees
 constexpr std::uint64_t kSpread = 0x9e3779b97f4a7c15U;
 constexpr std::size_t kBitsOfSlot = 4;
 constexpr double kMostCubes = 1e6;  // along an edge: three numbers of 21 bits are one of 63
@@ -52,7 +52,7 @@ void PlaceSums::add(std::size_t place, double deviation_mm) {
   if (std::abs(multiples) < 0x1p62) {
     sum.multiples += static_cast<std::int64_t>(multiples);
   } else {
-    sum.multiples += static_cast<Wide>(multiples);
+    sum.multiples += static_cast<Wide>(std::clamp(multiples, -kMostMultiples, kMostMultiples));
   }
 }
 

@@ -96,6 +96,12 @@ TEST(PlaceSums, DoNotDependOnTheOrderOrOnTheMessagesTheyCameIn) {
   EXPECT_NEAR(forward.average().mean_mm[1] * forward.average().count[1], 0.4 + 1e-12, 1e-15);
 }
 
+TEST(PlaceSums, HaveRoomForScansThatAreNowhereNear) {
+  PlaceSums sums(1);
+  for (int i = 0; i < 1000; ++i) sums.add(0, i % 4 == 0 ? -1e300 : 1e300);
+  EXPECT_EQ(sums.average().mean_mm[0], 0x1p29);
+}
+
 TEST(PlaceSums, RefuseThoseOfOtherPlaces) {
   PlaceSums two(2), three(3);
   three.add(2, 1.0);
