@@ -26,6 +26,8 @@ import sys
 import tempfile
 import time
 
+import streamed_readings
+
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
                "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "core"}
 
@@ -151,6 +153,27 @@ def plan_of_many(runs, items):
     return ("plan", study)
 
 
+def ball_bar_study(runs, items, in_memory):
+    """Readings of the ball bar of the trunnion in four files (streamed_readings.py)."""
+    folder = runs.folder / f"ball-bar-{items}-{in_memory}"
+    if not folder.exists():
+        folder.mkdir()
+        examples = runs.arguments.examples.resolve()
+        example, machine = streamed_readings.inputs_of(examples.parent)
+        rows = streamed_readings.simulated_rows(runs.arguments.abbe, example, machine, folder)
+        shards = streamed_readings.write_shards(folder, *rows, items)
+        streamed_readings.measured_study(example, machine, shards, in_memory, folder)
+    return ("run", folder / "bar.study.toml", "-o", runs.folder / "results")
+
+
+def identification(runs, items):
+    return ball_bar_study(runs, items, 0)
+
+
+def streamed_identification(runs, items):
+    return ball_bar_study(runs, items, 50000)
+
+
 APART = "apart"
 
 
@@ -191,14 +214,17 @@ def main():
     parser.add_argument("--poses", type=int, default=400000)
     parser.add_argument("--points", type=int, default=16000000, help="of a scan, at least 8000")
     parser.add_argument("--readings", type=int, default=480, help="of a plan, at least 400")
+    parser.add_argument("--measured", type=int, default=1000000, help="readings of an identification")
     parser.add_argument("--apart", action="store_true", help="also run two processes that share nothing")
     parser.add_argument("--candidates", type=int, default=1000000, help="of a plan of many, at least 1000")
-    parser.add_argument("--only", nargs="+", metavar="KIND", help="monte-carlo, map, deviate, deviate-files, "
-                        "deviate-in-blocks, register, plan, plan-of-many; default: all")
+    parser.add_argument("--only", nargs="+", metavar="KIND", help="identify, identify-in-pieces, monte-carlo, map, "
+                        "deviate, deviate-files, deviate-in-blocks, register, plan, plan-of-many; default: all")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(arguments, pathlib.Path(folder))
-        kinds = {"monte-carlo": (monte_carlo, arguments.samples), "map": (poses, arguments.poses),
+        kinds = {"identify": (identification, arguments.measured),
+                 "identify-in-pieces": (streamed_identification, arguments.measured),
+                 "monte-carlo": (monte_carlo, arguments.samples), "map": (poses, arguments.poses),
                  "deviate": (deviations, arguments.points), "deviate-files": (deviation_files, arguments.points),
                  "deviate-in-blocks": (streamed_deviations, arguments.points),
                  "register": (registration, arguments.points), "plan": (plan, arguments.readings),

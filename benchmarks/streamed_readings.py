@@ -120,6 +120,10 @@ def measured_study(example, machine, shards, in_memory, folder):
     return study
 
 
+def inputs_of(root):
+    return root / "examples/trunnion/ball-bar.study.toml", root / "examples/machines/trunnion-mill.machine.toml"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("abbe", type=pathlib.Path)
@@ -129,7 +133,7 @@ def main():
     parser.add_argument("--format", choices=["csv", "parquet", "arrow"], default="csv")
     options = parser.parse_args()
     root = pathlib.Path(__file__).resolve().parent.parent
-    example, machine = root / "examples/trunnion/ball-bar.study.toml", root / "examples/machines/trunnion-mill.machine.toml"
+    example, machine = inputs_of(root)
     options.folder.mkdir(parents=True)
     try:
         header, before, lengths = simulated_rows(options.abbe, example, machine, options.folder)
@@ -153,4 +157,5 @@ def main():
         shutil.rmtree(options.folder)
 
 
-main()
+if __name__ == "__main__":
+    main()

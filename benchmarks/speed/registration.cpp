@@ -55,7 +55,7 @@ int run(int argc, char** argv) {
   const Outcome own = own_registration(data);
   print("this project", own);
   bool met = true;
-  const auto compare = [&](const char* name, const Outcome& other) {
+  [[maybe_unused]] const auto compare = [&](const char* name, const Outcome& other) {
     print(name, other);
     const double ratio = other.total_s() / own.total_s();
     const bool good = ratio >= kTarget && own.error_mm <= other.error_mm;

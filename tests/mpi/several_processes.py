@@ -287,6 +287,34 @@ def read_again_after_a_kill(runs):
     require(not kept.exists(), "left over after the results are whole")
 
 
+def read_again_faults(runs):
+    """Readings in files: a wrong field is named whoever finds it, and nobody works on files of his own."""
+    study, script = study_of_files(runs, 60), runs.out / "abbe"
+    data = runs.out / "second.csv"
+    good = data.read_text()
+    lines = good.splitlines()
+    other = runs.out / "other"
+    other.mkdir()
+    shutil.copy(runs.out / "first.csv", other)
+    (other / "second.csv").write_text(good[:-2] + ("1" if good[-2] != "1" else "2") + "\n")
+    shutil.copy(study, other)
+    script.write_text("#!/bin/sh\n"
+                      f'if [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then set -- run "{other / study.name}" -o "{runs.out}/o"; fi\n'
+                      f'exec "{runs.abbe}" "$@"\n')
+    script.chmod(0o755)
+    done = subprocess.run([runs.mpirun, "-n", "2", script, "run", study, "-o", runs.out / "results"],
+                          capture_output=True, text=True, env=runs.environment())
+    require(done.returncode == 2 and "abbe: " in done.stderr, "other files:", done.returncode, done.stderr)
+    require(not (runs.out / "results").exists() and not (runs.out / "o").exists(), "results of other files")
+    data.write_text("\n".join(lines[:-1] + [lines[-1] + "mm"]) + "\n")
+    for processes in (0, 2, 3):
+        words = ("run", study, "-o", runs.out / "results")
+        done = runs.together(processes, *words) if processes else runs.alone(*words)
+        require(done.returncode == 2, processes, done.returncode, done.stderr)
+        require(f"second.csv:{len(lines)}" in done.stderr and "length_mm" in done.stderr, processes, done.stderr)
+        require(not (runs.out / "results").exists(), processes, "results from wrong readings")
+
+
 def two_jobs(runs):
     """A second job on the same results is refused as long as the first one works."""
     study = monte_carlo_study(runs, "study", runs.samples, 1)
@@ -386,6 +414,7 @@ def deviations_after_a_kill(runs):
 
 CASES = {"MonteCarlo": monte_carlo, "Maps": maps, "KilledAndResumed": killed_and_resumed, "TwoJobs": two_jobs,
          "ReadAgain": read_again, "ReadAgainAfterAKill": read_again_after_a_kill,
+         "ReadAgainFaults": read_again_faults,
          "Deviations": deviations, "StreamedDeviations": streamed_deviations,
          "DeviationsAfterAKill": deviations_after_a_kill,
          "SameBytes": same_bytes, "WorkersOfOtherFiles": other_files, "LostProcess": lost_process,

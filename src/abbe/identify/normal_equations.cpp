@@ -271,6 +271,10 @@ struct ReadingStream::Implementation {
     for (const SelectedObservations& selected : stated.observations)
       setups.push_back(selected.observations->unknown_values());
     reference = reference_point(stated);
+    if (summation.fingerprints()) {
+      fingerprints = summation.fingerprints()(reference, stop);
+      return;
+    }
     set_observations(stated, reference);
     fingerprints.resize(pieces.size());
     take_fingerprints(stated, pieces, {0, pieces.size()}, threads, fingerprints);

@@ -270,21 +270,25 @@ void InstrumentObservations::Implementation::differentiate(const BodyPair& pair,
   std::size_t columns = 0;
   for (std::size_t j = 0; j < machine_parameters.size(); ++j) columns = std::max(columns, out.place(j) + 1);
   JacobianTarget compact = out;
-  compact.stride = rows() * members;
-  compact.basis_stride = members;
-  s.jacobian.resize(columns * compact.stride + out.bases_written() * members);
-  compact.columns = s.jacobian.data();
-  compact.bases = compact.columns + columns * compact.stride;
+  // Where all readings of the block follow each other in their order, they are written to their places at once.
+  const bool in_place = members == count && std::is_sorted(s.at, s.at + members);
+  if (!in_place) {
+    compact.stride = rows() * members;
+    compact.basis_stride = members;
+    s.jacobian.resize(columns * compact.stride + out.bases_written() * members);
+    compact.columns = s.jacobian.data();
+    compact.bases = compact.columns + columns * compact.stride;
+  }
   double* by_position = nullptr;
   if (reversal.acts_on(readings.poses)) {
-    s.by_position.resize(s.axis.size() * compact.stride);
+    s.by_position.resize(s.axis.size() * rows() * members);
     by_position = s.by_position.data();
   }
   const BlockMembers block{first, count, {s.at, members}};
   differentiate_readings(pair.plan, {s.axis, members, s.state}, {s.start[0], s.start[1], s.start[2]},
                          {s.seen[0], s.seen[1], s.seen[2]}, {row_arrays, rows()}, machine_parameters, compact, nullptr,
                          by_position, reversal, readings.poses, block);
-  spread_derivatives(compact, columns, rows(), block, out);
+  if (!in_place) spread_derivatives(compact, columns, rows(), block, out);
 }
 
 void InstrumentObservations::Implementation::evaluate(std::size_t first, std::size_t count,

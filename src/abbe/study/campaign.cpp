@@ -188,7 +188,7 @@ Campaign gather_readings(const Study& study, const JobOptions& options) {
     } else {
       result.shards = shards_too_large(study, setup, options);
       if (result.shards) {
-        take_shards(*study.identification, result, campaign.warnings);
+        take_shards(result, campaign.warnings);
       } else {
         read_setup_files(study, setup, options.stop, use, result);
       }

@@ -11,6 +11,7 @@
 
 #include "abbe/formats/readings/instrument_file.h"
 #include "abbe/formats/text/csv_reader.h"
+#include "abbe/geometry/numbered_work.h"
 
 namespace abbe {
 
@@ -28,7 +29,9 @@ struct ShardSource {
   std::shared_ptr<const Instrument> device;
   std::string setup;
   bool noise_from_data = false;
+  std::size_t drawn = 0;  ///< about so many readings are kept in memory
   int threads = 0;
+  WorkDriver work{};  ///< who checks the readings; empty: this process
   std::stop_token stop{};
   std::function<void(std::size_t done, std::size_t total)> progress{};  ///< in bytes, from any thread, one at a time
 };
@@ -58,9 +61,9 @@ class ReadingShards {
   /// Readings first .. last - 1. Thread-safe. @throws InputError if a file has changed since it was checked
   InstrumentReadings read(std::size_t first, std::size_t last) const;
 
-  /// About `wanted` readings, drawn evenly with a fixed seed, in their order. With them those that stand at the ends of
-  /// what axes, known numbers and states run over, and one of every item. @throws InputError as read()
-  InstrumentReadings drawn(std::size_t wanted) const;
+  /// About ShardSource::drawn readings, drawn evenly with a fixed seed, in their order. With them those that stand at
+  /// the ends of what axes, known numbers and states run over, and one of every item.
+  InstrumentReadings drawn() const;
 
   /// "reading 12 of bar.csv", counted from 0, for messages.
   std::string place(std::size_t reading) const;

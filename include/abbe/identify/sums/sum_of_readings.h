@@ -7,12 +7,16 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "abbe/identify/sums/reading_pieces.h"
 #include "abbe/identify/sums/sum_request.h"
 
 namespace abbe {
+
+class ReadingStream;
 
 /// Sums over a range of pieces of the readings of a problem: a value that can be written, read and merged.
 ///
@@ -62,6 +66,9 @@ class PieceSummer {
  public:
   /// @param problem  its machine, structure of errors, and readings; the selection in it counts for nothing
   explicit PieceSummer(Problem problem);
+  ~PieceSummer();
+  PieceSummer(const PieceSummer&) = delete;
+  PieceSummer& operator=(const PieceSummer&) = delete;
 
   std::size_t piece_count() const { return pieces_.size(); }  ///< of the readings
 
@@ -70,8 +77,25 @@ class PieceSummer {
   /// @throws SumError if the request does not fit the problem; Stopped if that was asked for
   SumOfReadings sum(const SumRequest& request, PieceRange range, const SumOptions& options = {});
 
+  /// The first half of sum(), once for many ranges: the observations move to the request's point.
+  /// @param range  of pieces whose fingerprints are needed
+  void prepare(const SumRequest& request, PieceRange range, int threads);
+  /// The second half, of the last request that was prepared; from several threads at a time.
+  /// @throws SumError if there is no such range; Stopped
+  SumOfReadings sum_prepared(PieceRange range, const SumOptions& options = {}) const;
+
+  /// Moves the observations to a point of which fingerprints are wanted. @throws SumError if it does not fit
+  void prepare_fingerprints(const ReadingPoint& reference);
+  /// Of the readings of a piece at that point; from several threads at a time.
+  std::uint64_t fingerprint(std::size_t piece) const;
+  /// Fingerprints of all pieces at a point, which are not taken again.
+  void set_fingerprints(const ReadingPoint& reference, std::vector<std::uint64_t> fingerprints);
+  /// Those at a point if all of them are known.
+  const std::vector<std::uint64_t>* known_fingerprints(const ReadingPoint& reference) const;
+
  private:
   void check(const SumRequest& request) const;
+  void check(const ReadingPoint& point) const;
   void select(const SumRequest& request);
   const std::vector<std::uint64_t>& fingerprints(const ReadingPoint& reference, PieceRange range, int threads);
 
@@ -82,12 +106,36 @@ class PieceSummer {
   std::uint64_t reference_ = 0;              // of the fingerprints that are known
   std::vector<std::uint64_t> fingerprints_;  // [pieces]
   std::vector<std::uint8_t> is_known_;       // [pieces]
+  // Of the request that was prepared last: a sum without values, with the fingerprints of all its pieces.
+  SumRequest request_;
+  SumOfReadings head_;
+  std::unique_ptr<ReadingStream> stream_;
 };
 
 /// Gives the sum of all pieces for a request. Whoever writes one decides which process sums which pieces.
 ///
 /// It may throw, for instance SumError where a process has ended, or Stopped; the identification ends with that. The
 /// sum is checked before it is used: kind, point, selection, all pieces once, their readings, their sizes.
-using Summation = std::function<SumOfReadings(const SumRequest& request, const std::stop_token& stop)>;
+class Summation {
+ public:
+  using Sum = std::function<SumOfReadings(const SumRequest& request, const std::stop_token& stop)>;
+  /// [pieces] of the readings at a point: what the sums are checked with.
+  using Fingerprints =
+      std::function<std::vector<std::uint64_t>(const ReadingPoint& reference, const std::stop_token& stop)>;
+
+  Summation() = default;
+  /// @param fingerprints  for readings that take long to read; empty: whoever checks the sums evaluates all readings
+  template <class Callable>
+  requires std::is_constructible_v<Sum, Callable> Summation(Callable sum, Fingerprints fingerprints = {})
+      : sum_(std::move(sum)), fingerprints_(std::move(fingerprints)) {}
+
+  explicit operator bool() const { return static_cast<bool>(sum_); }
+  SumOfReadings operator()(const SumRequest& request, const std::stop_token& stop) const { return sum_(request, stop); }
+  const Fingerprints& fingerprints() const { return fingerprints_; }
+
+ private:
+  Sum sum_;
+  Fingerprints fingerprints_;
+};
 
 }  // namespace abbe

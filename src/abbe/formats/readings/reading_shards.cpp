@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 #include <map>
-#include <mutex>
+#include <span>
+#include <utility>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/formats/readings/outermost_readings.h"
+#include "abbe/formats/readings/readings_bytes.h"
 #include "abbe/formats/readings/shard_table.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/digest.h"
-#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/stopped.h"
 #include "abbe/instruments/observations.h"
 
@@ -20,58 +22,6 @@ namespace {
 
 static_assert(ReadingShards::kTogether % Observations::kBlockSize == 0);
 
-/// The readings that stand farthest out in some column, and the first of every item.
-class OutermostReadings {
- public:
-  void take(const InstrumentReadings& readings, std::size_t first) {
-    std::size_t column = 0;
-    const auto take_columns = [&](const auto& columns) {
-      for (const auto& values : columns) take_column(column++, values, first);
-    };
-    take_columns(readings.poses.axis);
-    take_columns(readings.poses.approach);
-    take_columns(readings.poses.state);
-    take_columns(readings.inputs);
-    for (std::size_t k = 0; k < readings.item.size(); ++k) {
-      const auto [place, is_new] = items_.try_emplace(readings.item[k], first + k);
-      if (!is_new) place->second = std::min(place->second, first + k);
-    }
-  }
-
-  std::vector<std::size_t> readings() const {
-    std::vector<std::size_t> result;
-    for (const auto& [column, ends] : columns_) {
-      result.push_back(ends.least.second);
-      result.push_back(ends.largest.second);
-    }
-    for (const auto& [item, reading] : items_) result.push_back(reading);
-    return result;
-  }
-
- private:
-  struct Ends {
-    std::pair<double, std::size_t> least, largest;  ///< and the first reading that has it
-  };
-
-  template <typename Values>
-  void take_column(std::size_t column, const Values& values, std::size_t first) {
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      const double value = static_cast<double>(values[k]);
-      if (std::isnan(value)) continue;
-      const auto [place, is_new] = columns_.try_emplace(column, Ends{{value, first + k}, {value, first + k}});
-      if (is_new) continue;
-      Ends& ends = place->second;
-      ends.least = std::min(ends.least, {value, first + k});
-      if (value > ends.largest.first || (!(value < ends.largest.first) && first + k < ends.largest.second)) {
-        ends.largest = {value, first + k};
-      }
-    }
-  }
-
-  std::map<std::size_t, Ends> columns_;
-  std::map<std::uint16_t, std::size_t> items_;
-};
-
 std::uint64_t fingerprint_of(const std::string& text) {
   Digest digest;
   digest.add_text(text);
@@ -79,10 +29,61 @@ std::uint64_t fingerprint_of(const std::string& text) {
 }
 
 bool is_drawn(std::size_t reading, std::size_t wanted, std::size_t count) {
-  if (wanted >= count) return true;
   RandomStream random(0x5eed, reading);
   return random.uniform() * static_cast<double>(count) < static_cast<double>(wanted);
 }
+
+/// What is found in some parts when they are checked.
+struct CheckedParts {
+  std::vector<std::uint64_t> fingerprints;  ///< [parts]
+  OutermostReadings outermost;
+  /// Those that are drawn and those that are outermost among these, with their numbers among all.
+  InstrumentReadings kept;
+  std::vector<std::size_t> numbers;
+
+  void keep(const InstrumentReadings& readings, std::size_t first, const std::vector<std::size_t>& wanted) {
+    if (wanted.empty()) return;
+    InstrumentReadings some = readings.subset(wanted);
+    if (kept.count() == 0) {
+      kept = std::move(some);
+    } else {
+      kept.append(some, true);
+    }
+    for (const std::size_t k : wanted) numbers.push_back(first + k);
+  }
+};
+
+void pack_checked(const CheckedParts& parts, std::vector<std::byte>& bytes) {
+  std::vector<std::uint64_t> numbers = parts.fingerprints;
+  numbers.push_back(parts.numbers.size());
+  numbers.insert(numbers.end(), parts.numbers.begin(), parts.numbers.end());
+  const auto of_numbers = std::as_bytes(std::span(numbers));
+  bytes.insert(bytes.end(), of_numbers.begin(), of_numbers.end());
+  parts.outermost.pack(bytes);
+  pack_readings(parts.kept, bytes);
+}
+
+/// @param count  of parts
+CheckedParts unpack_checked(std::span<const std::byte> bytes, std::size_t count) {
+  const auto take = [&] {
+    std::uint64_t number = 0;
+    if (bytes.size() < sizeof(number)) throw WorkError("what was found in some rows is cut off");
+    std::memcpy(&number, bytes.data(), sizeof(number));
+    bytes = bytes.subspan(sizeof(number));
+    return number;
+  };
+  CheckedParts parts;
+  for (std::size_t k = 0; k < count; ++k) parts.fingerprints.push_back(take());
+  for (std::uint64_t k = take(); k > 0; --k) parts.numbers.push_back(static_cast<std::size_t>(take()));
+  parts.outermost = OutermostReadings::unpack(bytes);
+  parts.kept = unpack_readings(bytes);
+  require_unpacked(bytes);
+  if (parts.kept.count() != parts.numbers.size()) throw WorkError("readings have other numbers than they should");
+  return parts;
+}
+
+/// Parts that are checked together: with few, every process gets some.
+constexpr std::size_t kMostTogether = 8, kBlocks = 256;
 
 }  // namespace
 
@@ -97,8 +98,8 @@ struct ReadingShards::Implementation {
   std::uint64_t fingerprint = 0;
   std::shared_ptr<const Instrument> device;
   std::vector<std::string> contradictions;
-  OutermostReadings outermost;
-  std::mutex mutex;
+  std::vector<std::size_t> outermost;  ///< ascending
+  std::vector<CheckedParts> checked;   ///< of blocks of parts
 
   void advance(std::size_t bytes) {
     stop_if_asked(source.stop);
@@ -109,6 +110,7 @@ struct ReadingShards::Implementation {
   void open_files();
   void find_all_rows();
   void check_all_rows();
+  void check_part(std::size_t number, const std::vector<std::string>& names, CheckedParts& checked_parts) const;
   void check_like_first(const InstrumentFile& first, const InstrumentFile& file, const std::string& name) const;
   InstrumentFile parse(const ShardPart& part, const std::string& text) const;
   InstrumentReadings read_part(const ShardPart& part) const;
@@ -192,21 +194,68 @@ void ReadingShards::Implementation::check_all_rows() {
     contradictions.insert(contradictions.end(), file.contradictions.begin(), file.contradictions.end());
   }
   const std::vector<std::string> names = device->target_names();
-  for_each_block(parts.size(), source.threads, [&](std::size_t i) {
-    ShardPart& part = parts[i];
-    const std::string text = files[part.file]->read(part);
-    part.bytes = fingerprint_of(text);
-    const InstrumentFile file = parse(part, text);
-    if (file.device->target_names() != names) {
-      const InputError late({.file = files[part.file]->path().string(), .line = 2},
-                            "names " + file.device->target_names().back() + " for the first time far down in the file",
-                            "all of them within the first rows of a file, or in the study");
-      throw files[part.file]->placed(late, part);
+  const std::size_t together = std::clamp<std::size_t>(parts.size() / kBlocks, 1, kMostTogether);
+  checked.resize((parts.size() + together - 1) / together);
+  const auto last_of = [&](std::size_t block) { return std::min((block + 1) * together, parts.size()); };
+  NumberedWork work{.name = "check of the readings", .blocks = checked.size(), .threads = source.threads};
+  work.is_followed = true;
+  work.for_all = true;
+  work.is_kept = false;
+  work.fingerprint = [&] {
+    Digest digest;
+    digest.add_text("check of the readings");
+    digest.add(fingerprint);
+    digest.add(source.drawn);
+    for (const std::string& name : names) digest.add_text(name);
+    return digest.value();
+  };
+  work.compute = [&](std::size_t block) {
+    for (std::size_t i = block * together; i < last_of(block); ++i) check_part(i, names, checked[block]);
+  };
+  work.pack = [&](std::size_t block, std::vector<std::byte>& bytes) { pack_checked(checked[block], bytes); };
+  work.unpack = [&](std::size_t block, std::span<const std::byte> bytes) {
+    checked[block] = unpack_checked(bytes, last_of(block) - block * together);
+  };
+  work.finished = [&](std::size_t block) {
+    for (std::size_t i = block * together; i < last_of(block); ++i) advance(files[parts[i].file]->bytes_of(parts[i]));
+  };
+  do_work(source.work, work);
+  OutermostReadings all;
+  for (std::size_t block = 0; block < checked.size(); ++block) {
+    all.take(std::exchange(checked[block].outermost, {}));
+    for (std::size_t i = block * together; i < last_of(block); ++i) {
+      parts[i].bytes = checked[block].fingerprints[i - block * together];
     }
-    const std::lock_guard lock(mutex);
-    outermost.take(file.readings, part.first);
-    advance(files[part.file]->bytes_of(part));
-  });
+  }
+  outermost = all.readings();
+}
+
+void ReadingShards::Implementation::check_part(std::size_t number, const std::vector<std::string>& names,
+                                               CheckedParts& checked_parts) const {
+  stop_if_asked(source.stop);
+  const ShardPart& part = parts[number];
+  const std::string text = files[part.file]->read(part);
+  checked_parts.fingerprints.push_back(fingerprint_of(text));
+  const InstrumentFile file = parse(part, text);
+  if (file.device->target_names() != names) {
+    const InputError late({.file = files[part.file]->path().string(), .line = 2},
+                          "names " + file.device->target_names().back() + " for the first time far down in the file",
+                          "all of them within the first rows of a file, or in the study");
+    throw files[part.file]->placed(late, part);
+  }
+  OutermostReadings own;
+  own.take(file.readings, part.first);
+  checked_parts.outermost.take(own);
+  if (source.drawn >= count) return;  // all of them are wanted
+  const std::vector<std::size_t> ends = own.readings();
+  std::vector<std::size_t> wanted;
+  for (std::size_t k = 0; k < part.count; ++k) {
+    const std::size_t reading = part.first + k;
+    if (is_drawn(reading, source.drawn, count) || std::binary_search(ends.begin(), ends.end(), reading)) {
+      wanted.push_back(k);
+    }
+  }
+  checked_parts.keep(file.readings, part.first, wanted);
 }
 
 InstrumentReadings ReadingShards::Implementation::read_part(const ShardPart& part) const {
@@ -259,30 +308,24 @@ InstrumentReadings ReadingShards::read(std::size_t first, std::size_t last) cons
   return result;
 }
 
-InstrumentReadings ReadingShards::drawn(std::size_t wanted) const {
-  Implementation& self = *implementation_;
-  std::vector<std::size_t> outermost = self.outermost.readings();
-  std::sort(outermost.begin(), outermost.end());
-  std::vector<InstrumentReadings> of_part(self.parts.size());
-  for_each_block(self.parts.size(), self.source.threads, [&](std::size_t i) {
-    stop_if_asked(self.source.stop);
-    const ShardPart& part = self.parts[i];
+InstrumentReadings ReadingShards::drawn() const {
+  const Implementation& self = *implementation_;
+  if (self.source.drawn >= self.count) return read(0, self.count);
+  InstrumentReadings result;
+  for (const CheckedParts& block : self.checked) {
     std::vector<std::size_t> taken;
-    for (std::size_t k = 0; k < part.count; ++k) {
-      if (is_drawn(part.first + k, wanted, self.count) ||
-          std::binary_search(outermost.begin(), outermost.end(), part.first + k)) {
+    for (std::size_t k = 0; k < block.numbers.size(); ++k) {
+      const std::size_t reading = block.numbers[k];
+      if (is_drawn(reading, self.source.drawn, self.count) ||
+          std::binary_search(self.outermost.begin(), self.outermost.end(), reading)) {
         taken.push_back(k);
       }
     }
-    if (!taken.empty()) of_part[i] = self.read_part(part).subset(taken);
-  });
-  InstrumentReadings result;
-  for (InstrumentReadings& own : of_part) {
-    if (own.count() == 0) continue;
+    if (taken.empty()) continue;
     if (result.count() == 0) {
-      result = std::move(own);
+      result = block.kept.subset(taken);
     } else {
-      result.append(own, true);
+      result.append(block.kept.subset(taken), true);
     }
   }
   return result;

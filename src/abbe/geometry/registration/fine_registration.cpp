@@ -64,8 +64,13 @@ class Fit {
         distances_(sums_.size()),
         ordered_(sums_.size()),
         hints_(static_cast<std::size_t>(points.cols()), ClosestPointFinder::kNoHint) {
-    middle_ = points.rowwise().mean();
-    extent_ = std::sqrt((points.colwise() - middle_).squaredNorm() / static_cast<double>(points.cols()));
+    // Column by column: sums along the rows of so many columns would read the points three times.
+    const auto count = static_cast<double>(points.cols());
+    Vector3d sum = Vector3d::Zero(), squares = Vector3d::Zero();
+    for (Index i = 0; i < points.cols(); ++i) sum += points.col(i);
+    middle_ = sum / count;
+    for (Index i = 0; i < points.cols(); ++i) squares += (points.col(i) - middle_).cwiseAbs2();
+    extent_ = std::sqrt(squares.sum() / count);
   }
 
   double extent() const { return extent_; }
@@ -136,6 +141,7 @@ class Fit {
 
  private:
   static constexpr Index kBlock = ClosestPointFinder::kBlock;
+  static constexpr Index kSlice = 256;  ///< points of a block that stay in the first cache, with what is found
 
   WeightedSums pass_again() {
     for (WeightedSums& sums : sums_) sums = {};
@@ -156,24 +162,29 @@ class Fit {
       own.resize(3, count);
       for (Index i = 0; i < count; ++i) own.col(i) = points_.col(number(first + i));
     }
-    const Matrix3Xd moved = (pose_.rotation * own).colwise() + pose_.translation;
-    std::vector<SurfacePoint> found(static_cast<std::size_t>(count));
-    surface_.closest_block(moved, found.data(), hints_.data() + first);
     const Vector3d middle = reference(pose_);
     BlockDistances& distances = distances_[block];
     distances.within.clear();
     distances.below = distances.all = 0;
-    for (Index i = 0; i < count; ++i) {
-      const SurfacePoint& at = found[static_cast<std::size_t>(i)];
-      if (at.on_border) {
-        ++sums_[block].beyond_border;
-        continue;
+    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kSlice> moved;
+    std::array<SurfacePoint, kSlice> found;
+    for (Index from = 0; from < count; from += kSlice) {
+      const Index some = std::min(kSlice, count - from);
+      moved.noalias() = pose_.rotation * own.middleCols(from, some);
+      moved.colwise() += pose_.translation;
+      surface_.closest_block(moved, found.data(), hints_.data() + first + from);
+      for (Index i = 0; i < some; ++i) {
+        const SurfacePoint& at = found[static_cast<std::size_t>(i)];
+        if (at.on_border) {
+          ++sums_[block].beyond_border;
+          continue;
+        }
+        add(at, moved.col(i), moved.col(i) - middle, scale_, &sums_[block]);
+        const double distance = std::abs(at.distance);
+        ++distances.all;
+        if (distance < window_.low) ++distances.below;
+        if (distance >= window_.low && distance <= window_.high) distances.within.push_back(distance);
       }
-      add(at, moved.col(i), moved.col(i) - middle, scale_, &sums_[block]);
-      const double distance = std::abs(at.distance);
-      ++distances.all;
-      if (distance < window_.low) ++distances.below;
-      if (distance >= window_.low && distance <= window_.high) distances.within.push_back(distance);
     }
   }
 

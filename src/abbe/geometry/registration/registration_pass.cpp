@@ -10,7 +10,7 @@ namespace abbe {
 namespace {
 
 /// Blocks that are handed out together: few of few, so that every process gets some.
-constexpr std::size_t kMostTogether = 8, kGroups = 32;
+constexpr std::size_t kMostTogether = 8, kGroups = 128;
 
 /// Calls with the numbers of which the sums consist, in place.
 template <typename Take>

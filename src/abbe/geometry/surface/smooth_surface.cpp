@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/surface/surface_normals.h"
 
@@ -100,12 +99,15 @@ SmoothSurface::Curvature SmoothSurface::curvature(std::uint32_t triangle) const 
                  turn_ac = (face.normal[2] - face.normal[0]).cast<double>();
   turns << turn_ab.dot(x), turn_ac.dot(x), turn_ab.dot(y), turn_ac.dot(y);
   const Matrix2d shape = turns * edges.inverse();
-  const SymmetricEigen<2> solver(0.5 * (shape + shape.transpose()));
-  for (int k = 0; k < 2; ++k) {
-    const Vector2d direction = solver.eigenvectors().col(k);
-    result.direction[k] = direction.x() * x + direction.y() * y;
-    result.value[k] = solver.eigenvalues()[k];
-  }
+  // Eigenvalues and eigenvectors in closed form; the vector is the one of two that does not suffer from cancellation.
+  const double mean = 0.5 * shape.trace(), half = 0.5 * (shape(0, 0) - shape(1, 1)),
+               twist = 0.5 * (shape(0, 1) + shape(1, 0)), radius = std::hypot(half, twist);
+  Vector2d most = half >= 0 ? Vector2d(half + radius, twist) : Vector2d(twist, radius - half);
+  most = radius > 0 ? Vector2d(most / std::hypot(most.x(), most.y())) : Vector2d(Vector2d::UnitX());
+  result.value[0] = mean - radius;
+  result.value[1] = mean + radius;
+  result.direction[0] = -most.y() * x + most.x() * y;
+  result.direction[1] = most.x() * x + most.y() * y;
   return result;
 }
 

@@ -17,6 +17,12 @@ std::uint64_t fingerprint_of(const ReadingPoint& point) {
   return point_fingerprint(request);
 }
 
+void refuse(const std::string& what) { throw SumError("the request for sums does not fit the readings here: " + what); }
+
+void expect(const std::string& what, std::size_t asked, std::size_t here) {
+  if (asked != here) refuse(fmt::format("{} {} there, {} here", what, asked, here));
+}
+
 }  // namespace
 
 PieceSummer::PieceSummer(Problem problem)
@@ -29,24 +35,20 @@ PieceSummer::PieceSummer(Problem problem)
   stated_.priors.clear();
   stated_.joint_priors.clear();
 }
+PieceSummer::~PieceSummer() = default;
+
+void PieceSummer::check(const ReadingPoint& point) const {
+  expect("parameters of the errors:", point.machine.size(), stated_.errors.parameter_count());
+  expect("sets of readings:", point.setups.size(), stated_.observations.size());
+  for (std::size_t o = 0; o < point.setups.size(); ++o) {
+    const Observations& own = *stated_.observations[o].observations;
+    expect("unknowns of the set-up of " + own.name() + ":", point.setups[o].size(), own.unknowns().size());
+  }
+}
 
 void PieceSummer::check(const SumRequest& request) const {
-  const auto refuse = [](const std::string& what) {
-    throw SumError("the request for sums does not fit the readings here: " + what);
-  };
-  const auto expect = [&](const std::string& what, std::size_t asked, std::size_t here) {
-    if (asked != here) refuse(fmt::format("{} {} there, {} here", what, asked, here));
-  };
-  const auto expect_point = [&](const ReadingPoint& point) {
-    expect("parameters of the errors:", point.machine.size(), stated_.errors.parameter_count());
-    expect("sets of readings:", point.setups.size(), stated_.observations.size());
-    for (std::size_t o = 0; o < point.setups.size(); ++o) {
-      const Observations& own = *stated_.observations[o].observations;
-      expect("unknowns of the set-up of " + own.name() + ":", point.setups[o].size(), own.unknowns().size());
-    }
-  };
-  expect_point(request.point);
-  expect_point(request.reference);
+  check(request.point);
+  check(request.reference);
   expect("sets of readings:", request.setups.size(), stated_.observations.size());
   const auto within = [](const std::vector<std::size_t>& list, std::size_t count) {
     return std::all_of(list.begin(), list.end(), [&](std::size_t index) { return index < count; });
@@ -93,6 +95,7 @@ void PieceSummer::select(const SumRequest& request) {
 
 const std::vector<std::uint64_t>& PieceSummer::fingerprints(const ReadingPoint& reference, PieceRange range,
                                                             int threads) {
+  check(reference);
   if (const std::uint64_t now = fingerprint_of(reference); now != reference_) {
     std::fill(is_known_.begin(), is_known_.end(), std::uint8_t{0});
     reference_ = now;
@@ -107,40 +110,78 @@ const std::vector<std::uint64_t>& PieceSummer::fingerprints(const ReadingPoint& 
   return fingerprints_;
 }
 
-SumOfReadings PieceSummer::sum(const SumRequest& request, PieceRange range, const SumOptions& options) {
+void PieceSummer::prepare_fingerprints(const ReadingPoint& reference) {
+  check(reference);
+  set_observations(stated_, reference);
+}
+
+std::uint64_t PieceSummer::fingerprint(std::size_t piece) const {
+  std::vector<std::uint64_t> all(pieces_.size());
+  take_fingerprints(stated_, pieces_, {piece, piece + 1}, 1, all);
+  return all[piece];
+}
+
+void PieceSummer::set_fingerprints(const ReadingPoint& reference, std::vector<std::uint64_t> fingerprints) {
+  expect("pieces:", fingerprints.size(), pieces_.size());
+  reference_ = fingerprint_of(reference);
+  fingerprints_ = std::move(fingerprints);
+  std::fill(is_known_.begin(), is_known_.end(), std::uint8_t{1});
+}
+
+const std::vector<std::uint64_t>* PieceSummer::known_fingerprints(const ReadingPoint& reference) const {
+  const bool all =
+      reference_ == fingerprint_of(reference) && std::find(is_known_.begin(), is_known_.end(), 0) == is_known_.end();
+  return all ? &fingerprints_ : nullptr;
+}
+
+void PieceSummer::prepare(const SumRequest& request, PieceRange range, int threads) {
   check(request);
-  const bool of_poses = request.kind == SumKind::poses;
-  SumOfReadings result;
-  result.kind = request.kind;
-  result.point = point_fingerprint(request);
-  result.selection = selection_fingerprint(request);
-  result.processor = vector_instructions();
-  result.range = range;
-  std::vector<std::uint64_t> known;
-  if (of_poses) {
+  SumOfReadings head;
+  head.kind = request.kind;
+  head.point = point_fingerprint(request);
+  head.selection = selection_fingerprint(request);
+  head.processor = vector_instructions();
+  if (request.kind == SumKind::poses) {
     select(request);
     const std::vector<ReadingPiece> poses = divide_poses(weighed_observations(selected_));
-    known =
-        fingerprints_of_poses(poses, pieces_, fingerprints(request.reference, {0, pieces_.size()}, options.threads));
+    head.readings =
+        fingerprints_of_poses(poses, pieces_, fingerprints(request.reference, {0, pieces_.size()}, threads));
   } else {
     if (range.first <= range.last && range.last <= pieces_.size())
-      known = fingerprints(request.reference, range, options.threads);
-    known.resize(pieces_.size());
+      head.readings = fingerprints(request.reference, range, threads);
+    head.readings.resize(pieces_.size());
     select(request);
   }
-  result.pieces = known.size();
-  if (request.pieces != result.pieces)
+  head.pieces = head.readings.size();
+  if (request.pieces != head.pieces)
     throw SumError(fmt::format("the request for sums is of another problem: {} pieces there, {} here", request.pieces,
-                               result.pieces));
-  if (range.first > range.last || range.last > result.pieces)
-    throw SumError(
-        fmt::format("pieces {} to {} were asked for, but there are {}", range.first, range.last, result.pieces));
-  result.readings.assign(known.begin() + static_cast<std::ptrdiff_t>(range.first),
-                         known.begin() + static_cast<std::ptrdiff_t>(range.last));
+                               head.pieces));
   set_observations(selected_, request.point);
-  result.values = ReadingStream(selected_, options.threads)
-                      .sum_pieces(request.kind, request.loss, request.covariance, range, options);
+  stream_ = std::make_unique<ReadingStream>(selected_, threads);
+  head_ = std::move(head);
+  request_ = request;
+}
+
+SumOfReadings PieceSummer::sum_prepared(PieceRange range, const SumOptions& options) const {
+  if (range.first > range.last || range.last > head_.pieces)
+    throw SumError(
+        fmt::format("pieces {} to {} were asked for, but there are {}", range.first, range.last, head_.pieces));
+  SumOfReadings result;
+  result.kind = head_.kind;
+  result.point = head_.point;
+  result.selection = head_.selection;
+  result.processor = head_.processor;
+  result.pieces = head_.pieces;
+  result.range = range;
+  result.readings.assign(head_.readings.begin() + static_cast<std::ptrdiff_t>(range.first),
+                         head_.readings.begin() + static_cast<std::ptrdiff_t>(range.last));
+  result.values = stream_->sum_pieces(request_.kind, request_.loss, request_.covariance, range, options);
   return result;
+}
+
+SumOfReadings PieceSummer::sum(const SumRequest& request, PieceRange range, const SumOptions& options) {
+  prepare(request, range, options.threads);
+  return sum_prepared(range, options);
 }
 
 }  // namespace abbe

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/stopped.h"
 #include "abbe/identify/function_observations_test.h"
 #include "abbe/identify/normal_equations.h"
@@ -137,6 +138,68 @@ TEST(SumOfReadings, GivesTheStreamTheBytesThatItHasByItself) {
   EXPECT_EQ(here.norms(x), there.norms(x));
   EXPECT_EQ(here.orthogonal_factor(x, loss), there.orthogonal_factor(x, loss));
   EXPECT_EQ(sums, 5);
+}
+
+TEST(SumOfReadings, OfAPreparedRequestIsThatOfTheRequest) {
+  TwoInstruments two;
+  PieceSummer summer(two.problem), prepared(two.problem);
+  for (const SumKind kind : {SumKind::gradient, SumKind::normal, SumKind::norms}) {
+    const SumRequest request = request_of(two.problem, kind);
+    prepared.prepare(request, {0, 15}, 2);
+    std::vector<SumOfReadings> pieces(15);
+    for_each_block(15, 3, [&](std::size_t i) { pieces[i] = prepared.sum_prepared({i, i + 1}, {.threads = 1}); });
+    EXPECT_EQ(to_bytes(merge_all(pieces)), to_bytes(summer.sum(request, {0, 15})));
+    EXPECT_THROW(prepared.sum_prepared({14, 16}), SumError);
+  }
+}
+
+TEST(SumOfReadings, TakesFingerprintsThatAreGivenAndOthersOnce) {
+  TwoInstruments two;
+  PieceSummer summer(two.problem);
+  const SumRequest request = request_of(two.problem, SumKind::cost);
+  const std::vector<std::uint64_t> expected = summer.sum(request, {0, 15}).readings;
+  PieceSummer other(two.problem);
+  EXPECT_EQ(other.known_fingerprints(request.reference), nullptr);
+  other.prepare_fingerprints(request.reference);
+  std::vector<std::uint64_t> found;
+  for (std::size_t i = 0; i < 15; ++i) found.push_back(other.fingerprint(i));
+  EXPECT_EQ(found, expected);
+  found[3] = 17;
+  other.set_fingerprints(request.reference, found);
+  ASSERT_NE(other.known_fingerprints(request.reference), nullptr);
+  EXPECT_EQ(*other.known_fingerprints(request.reference), found);
+  EXPECT_EQ(other.sum(request, {0, 15}).readings, found);
+  ReadingPoint elsewhere = request.reference;
+  elsewhere.machine[0] += 1e-9;
+  EXPECT_EQ(other.known_fingerprints(elsewhere), nullptr);
+  EXPECT_THROW(other.set_fingerprints(request.reference, {1, 2}), SumError);
+  elsewhere.machine.pop_back();
+  EXPECT_THROW(other.prepare_fingerprints(elsewhere), SumError);
+}
+
+TEST(SumOfReadings, IsCheckedWithTheFingerprintsOfTheSummation) {
+  TwoInstruments two;
+  PieceSummer summer(two.problem);
+  const auto sum = [&](const SumRequest& request, const std::stop_token&) { return summer.sum(request, {0, 15}); };
+  std::uint64_t changed = 0;
+  int asked = 0;
+  const auto fingerprints = [&](const ReadingPoint& reference, const std::stop_token&) {
+    ++asked;
+    PieceSummer own(two.problem);
+    own.prepare_fingerprints(reference);
+    std::vector<std::uint64_t> all;
+    for (std::size_t i = 0; i < own.piece_count(); ++i) all.push_back(own.fingerprint(i));
+    all[4] += changed;
+    return all;
+  };
+  const Eigen::VectorXd x = present_values(two.problem);
+  const NormalEquations here = ReadingStream(two.problem, 1).sums(x, Loss{}, Wanted::normal);
+  EXPECT_EQ(ReadingStream(two.problem, 1, Summation(sum, fingerprints)).sums(x, Loss{}, Wanted::normal).normal,
+            here.normal);
+  EXPECT_EQ(asked, 1);
+  changed = 1;
+  const ReadingStream other(two.problem, 1, Summation(sum, fingerprints));
+  EXPECT_THROW(other.sums(x, Loss{}, Wanted::normal), SumError);
 }
 
 // Why the pieces of a range stay apart: a total of the range could not be added to those of others without changing

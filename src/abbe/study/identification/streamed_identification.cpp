@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <mutex>
-#include <optional>
+#include <span>
 
 #include "abbe/formats/readings/streamed_observations.h"
 #include "abbe/formats/study/study_instrument.h"
@@ -56,28 +56,28 @@ class StreamedSums {
         progress_(job.progress) {}
 
   SumOfReadings operator()(const SumRequest& request, const std::stop_token& stop) {
-    std::vector<SumOfReadings> parts((request.pieces + kPiecesOfBlock - 1) / kPiecesOfBlock);
+    summer_.prepare(request, {0, summer_.piece_count()}, threads_);
+    std::vector<SumOfReadings> parts(request.pieces);
     std::size_t done = 0;
     NumberedWork work{.name = "sums over the readings", .blocks = parts.size(), .threads = threads_};
-    work.in_parallel = false;
     work.is_followed = true;
     work.for_all = true;
     work.fingerprint = [&] { return fingerprint(request); };
-    work.compute = [&](std::size_t block) {
+    work.compute = [&](std::size_t piece) {
       stop_if_asked(stop);
-      parts[block] = summer_.sum(request, range_of(block, request), {threads_, stop, {}});
+      parts[piece] = summer_.sum_prepared({piece, piece + 1}, {1, stop, {}});
     };
-    work.pack = [&](std::size_t block, std::vector<std::byte>& bytes) {
-      const std::vector<std::byte> sum = to_bytes(parts[block]);
+    work.pack = [&](std::size_t piece, std::vector<std::byte>& bytes) {
+      const std::vector<std::byte> sum = to_bytes(parts[piece]);
       bytes.insert(bytes.end(), sum.begin(), sum.end());
     };
-    work.unpack = [&](std::size_t block, std::span<const std::byte> bytes) {
+    work.unpack = [&](std::size_t piece, std::span<const std::byte> bytes) {
       try {
-        parts[block] = sum_from_bytes(bytes);
+        parts[piece] = sum_from_bytes(bytes);
       } catch (const SumError& error) {
         throw WorkError(error.what());
       }
-      if (!(parts[block].range == range_of(block, request))) throw WorkError("a sum is of other pieces");
+      if (!(parts[piece].range == PieceRange{piece, piece + 1})) throw WorkError("a sum is of another piece");
     };
     // Nobody knows how many sums the solver will ask for; this is how far the present one has come.
     work.finished = [&](std::size_t) {
@@ -87,26 +87,53 @@ class StreamedSums {
     return merge_all(std::move(parts));
   }
 
- private:
-  static constexpr std::size_t kPiecesOfBlock = 8;
-
-  static PieceRange range_of(std::size_t block, const SumRequest& request) {
-    return {block * kPiecesOfBlock, std::min((block + 1) * kPiecesOfBlock, request.pieces)};
+  /// Of the readings of all pieces, as Summation has it.
+  std::vector<std::uint64_t> fingerprints(const ReadingPoint& reference, const std::stop_token& stop) {
+    if (const std::vector<std::uint64_t>* known = summer_.known_fingerprints(reference)) return *known;
+    summer_.prepare_fingerprints(reference);
+    std::vector<std::uint64_t> all(summer_.piece_count());
+    NumberedWork work{.name = "fingerprints of the readings", .blocks = all.size(), .threads = threads_};
+    work.is_followed = true;
+    work.for_all = true;
+    work.is_kept = false;
+    work.fingerprint = [&] {
+      Digest digest;
+      digest.add_text("fingerprints of the readings");
+      digest.add_text(vector_instructions());
+      digest.add(readings_);
+      digest.add_numbers(reference.machine);
+      for (const std::vector<double>& setup : reference.setups) digest.add_numbers(setup);
+      return digest.value();
+    };
+    work.compute = [&](std::size_t piece) {
+      stop_if_asked(stop);
+      all[piece] = summer_.fingerprint(piece);
+    };
+    work.pack = [&](std::size_t piece, std::vector<std::byte>& bytes) {
+      const auto own = std::as_bytes(std::span(&all[piece], 1));
+      bytes.insert(bytes.end(), own.begin(), own.end());
+    };
+    work.unpack = [&](std::size_t piece, std::span<const std::byte> bytes) {
+      const auto own = std::as_writable_bytes(std::span(&all[piece], 1));
+      if (bytes.size() != own.size()) throw WorkError("a fingerprint is cut off");
+      std::copy(bytes.begin(), bytes.end(), own.begin());
+    };
+    do_work(driver_, work);
+    summer_.set_fingerprints(reference, all);
+    return all;
   }
 
-  /// Of the request, all readings, and the model: residuals and derivatives of the first piece.
-  std::uint64_t fingerprint(const SumRequest& request) {
-    if (!model_) {
-      SumRequest cost = request;
-      cost.kind = SumKind::cost;
-      cost.covariance.clear();
-      model_ = summer_.sum(cost, {0, 1}, {threads_, {}, {}}).readings.front();
-    }
+ private:
+  /// Of the request, and of all readings and the model: residuals at a point near that of the start.
+  std::uint64_t fingerprint(const SumRequest& request) const {
     Digest digest;
+    digest.add_text("sums of single pieces");
     digest.add_text(vector_instructions());
     digest.add_bytes(to_bytes(request));
     digest.add(readings_);
-    digest.add(*model_);
+    if (const std::vector<std::uint64_t>* known = summer_.known_fingerprints(request.reference)) {
+      for (const std::uint64_t of_piece : *known) digest.add(of_piece);
+    }
     return digest.value();
   }
 
@@ -115,43 +142,71 @@ class StreamedSums {
   int threads_;
   WorkDriver driver_;
   ProgressCallback progress_;
-  std::optional<std::uint64_t> model_;
 };
 
 /// What is said of all readings after the fit, without keeping anything of each.
 struct NormTally {
-  std::size_t beyond = 0;
+  double beyond = 0;  ///< number of readings
   double largest = 0;
-  std::size_t reading = 0;
+  double reading = 0;  ///< number of the first one that has it
+
+  void take(const NormTally& other) {
+    beyond += other.beyond;
+    if (other.largest > largest || (other.largest == largest && other.reading < reading)) {
+      largest = other.largest;
+      reading = other.reading;
+    }
+  }
 };
 
-NormTally tally_norms(const Observations& observations, double limit, int threads) {
-  constexpr std::size_t kBlock = Observations::kBlockSize, kTogether = ReadingShards::kTogether;
-  const std::size_t count = observations.reading_count(), rows = static_cast<std::size_t>(observations.rows());
+NormTally tally_part(const Observations& observations, double limit, std::size_t first, std::size_t last) {
+  constexpr std::size_t kBlock = Observations::kBlockSize;
+  const std::size_t rows = static_cast<std::size_t>(observations.rows());
+  NormTally own;
+  std::vector<double> residuals(rows * kBlock);
+  for (; first < last; first += kBlock) {
+    const std::size_t n = std::min(kBlock, last - first);
+    observations.evaluate(first, n, {}, {}, residuals.data(), nullptr, rows * n);
+    for (std::size_t k = 0; k < n; ++k) {
+      double square = 0;
+      for (std::size_t row = 0; row < rows; ++row) square += residuals[row * n + k] * residuals[row * n + k];
+      const double norm = std::sqrt(square);
+      if (norm > limit) own.beyond += 1;
+      if (norm > own.largest) own.largest = norm, own.reading = static_cast<double>(first + k);
+    }
+  }
+  return own;
+}
+
+/// @param fingerprint  of readings and estimates
+NormTally tally_norms(const Observations& observations, double limit, std::uint64_t fingerprint, int threads,
+                      const WorkDriver& driver) {
+  constexpr std::size_t kBlocks = 256, kMostTogether = 8;
+  const std::size_t count = observations.reading_count(),
+                    parts = (count + ReadingShards::kTogether - 1) / ReadingShards::kTogether,
+                    together = ReadingShards::kTogether * std::clamp<std::size_t>(parts / kBlocks, 1, kMostTogether);
+  std::vector<NormTally> tallies((count + together - 1) / together);
+  NumberedWork work{.name = "norms of the residuals", .blocks = tallies.size(), .threads = threads};
+  work.is_followed = true;
+  work.for_all = true;
+  work.is_kept = false;
+  work.fingerprint = [&] { return fingerprint; };
+  work.compute = [&](std::size_t block) {
+    tallies[block] = tally_part(observations, limit, block * together, std::min(count, (block + 1) * together));
+  };
+  work.pack = [&](std::size_t block, std::vector<std::byte>& bytes) {
+    const NormTally& own = tallies[block];
+    pack_numbers(std::array{own.beyond, own.largest, own.reading}, bytes);
+  };
+  work.unpack = [&](std::size_t block, std::span<const std::byte> bytes) {
+    std::array<double, 3> numbers{};
+    unpack_numbers(bytes, numbers);
+    require_unpacked(bytes);
+    tallies[block] = {numbers[0], numbers[1], numbers[2]};
+  };
+  do_work(driver, work);
   NormTally total;
-  std::mutex mutex;
-  for_each_block((count + kTogether - 1) / kTogether, threads, [&](std::size_t part) {
-    NormTally own;
-    std::vector<double> residuals(rows * kBlock);
-    const std::size_t last = std::min(count, (part + 1) * kTogether);
-    for (std::size_t first = part * kTogether; first < last; first += kBlock) {
-      const std::size_t n = std::min(kBlock, last - first);
-      observations.evaluate(first, n, {}, {}, residuals.data(), nullptr, rows * n);
-      for (std::size_t k = 0; k < n; ++k) {
-        double square = 0;
-        for (std::size_t row = 0; row < rows; ++row) square += residuals[row * n + k] * residuals[row * n + k];
-        const double norm = std::sqrt(square);
-        if (norm > limit) ++own.beyond;
-        if (norm > own.largest) own.largest = norm, own.reading = first + k;
-      }
-    }
-    const std::lock_guard lock(mutex);
-    total.beyond += own.beyond;
-    if (own.largest > total.largest || (own.largest == total.largest && own.reading < total.reading)) {
-      total.largest = own.largest;
-      total.reading = own.reading;
-    }
-  });
+  for (const NormTally& own : tallies) total.take(own);
   return total;
 }
 
@@ -171,17 +226,26 @@ void list_kept_outliers(const Problem& kept, double quantile, Identification& id
                    [](const Outlier& a, const Outlier& b) { return a.norm > b.norm; });
 }
 
-void tell_streamed(const Problem& streamed, double quantile, int threads, StudyResult& result) {
+void tell_streamed(const Problem& streamed, double quantile, int threads, const WorkDriver& driver,
+                   StudyResult& result) {
+  const Eigen::VectorXd& estimates = result.identification.estimates;
   for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
     const CampaignSetup& setup = result.campaign.setups[s];
     if (!setup.shards) continue;
+    Digest digest;
+    digest.add_text(vector_instructions());
+    digest.add_text(setup.name);
+    digest.add(setup.shards->fingerprint());
+    digest.add_numbers({estimates.data(), static_cast<std::size_t>(estimates.size())});
     const Observations& all = *streamed.observations[s].observations;
-    const NormTally tally = tally_norms(all, std::sqrt(chi_square_quantile(quantile, all.rows())), threads);
+    const NormTally tally =
+        tally_norms(all, std::sqrt(chi_square_quantile(quantile, all.rows())), digest.value(), threads, driver);
     result.warnings.push_back(fmt::format(
         "{}: {} of all {} readings are outliers ({:.0f} by chance); the largest residual is {:.3g} standard "
         "uncertainties, {}",
-        setup.name, tally.beyond, setup.shards->count(), quantile * static_cast<double>(setup.shards->count()),
-        tally.largest, setup.shards->place(tally.reading)));
+        setup.name, static_cast<std::size_t>(tally.beyond), setup.shards->count(),
+        quantile * static_cast<double>(setup.shards->count()), tally.largest,
+        setup.shards->place(static_cast<std::size_t>(tally.reading))));
   }
 }
 
@@ -199,7 +263,9 @@ std::shared_ptr<const ReadingShards> shards_too_large(const Study& study, const 
                      .device = setup.device,
                      .setup = setup.name,
                      .noise_from_data = setup.noise_from_data,
+                     .drawn = study.identification->readings_in_memory,
                      .threads = study.threads,
+                     .work = options.work,
                      .stop = options.stop,
                      .progress = options.progress};
   for (const SetupData& data : setup.data) source.files.push_back({data.file, data.mapping});
@@ -209,9 +275,9 @@ std::shared_ptr<const ReadingShards> shards_too_large(const Study& study, const 
   return shards;
 }
 
-void take_shards(const IdentificationPlan& plan, CampaignSetup& setup, std::vector<std::string>& warnings) {
+void take_shards(CampaignSetup& setup, std::vector<std::string>& warnings) {
   setup.device = setup.shards->device();
-  setup.readings = setup.shards->drawn(plan.readings_in_memory);
+  setup.readings = setup.shards->drawn();
   const std::vector<std::string>& told = setup.shards->contradictions();
   setup.contradictions.insert(setup.contradictions.end(), told.begin(), told.end());
   warnings.push_back(fmt::format(
@@ -254,14 +320,16 @@ void identify_streamed(const Study& study, const IdentifyOptions& given, const I
   auto sums = std::make_shared<StreamedSums>(std::move(elsewhere), readings, study.threads, job);
   IdentifyOptions options = given;
   options.list_outliers = false;
-  options.solver.summation = [sums](const SumRequest& request, const std::stop_token& stop) {
-    return (*sums)(request, stop);
-  };
+  options.solver.summation =
+      Summation([sums](const SumRequest& request, const std::stop_token& stop) { return (*sums)(request, stop); },
+                [sums](const ReadingPoint& reference, const std::stop_token& stop) {
+                  return sums->fingerprints(reference, stop);
+                });
   result.identification = identify(streamed, options);
   if (result.identification.estimates.size() > 0) {
     keep_estimates(kept, result.identification.estimates);
     list_kept_outliers(kept, options.outlier_norm_quantile, result.identification);
-    tell_streamed(streamed, options.outlier_norm_quantile, study.threads, result);
+    tell_streamed(streamed, options.outlier_norm_quantile, study.threads, job.work, result);
   }
 }
 

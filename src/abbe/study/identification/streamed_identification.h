@@ -18,7 +18,7 @@ std::shared_ptr<const ReadingShards> shards_too_large(const Study& study, const 
 
 /// Takes the instrument and the kept readings from the shards of a set-up.
 /// @param warnings  what is of the kept readings only; appended
-void take_shards(const IdentificationPlan& plan, CampaignSetup& setup, std::vector<std::string>& warnings);
+void take_shards(CampaignSetup& setup, std::vector<std::string>& warnings);
 
 /// Number of all readings, those included that are not in memory.
 std::size_t all_reading_count(const CampaignSetup& setup);
