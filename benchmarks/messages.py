@@ -47,7 +47,8 @@ def main():
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         runs = kinds.Runs(arguments, pathlib.Path(folder))
-        given = {"monte-carlo": (kinds.monte_carlo, 20000), "map": (kinds.poses, 100000),
+        given = {"identify-in-pieces": (kinds.streamed_identification, 200000),
+                 "monte-carlo": (kinds.monte_carlo, 20000), "map": (kinds.poses, 100000),
                  "deviate": (kinds.deviations, 1600000), "deviate-files": (kinds.deviation_files, 1600000),
                  "deviate-in-blocks": (kinds.streamed_deviations, 1600000), "register": (kinds.registration, 400000),
                  "plan": (kinds.plan, 240)}

@@ -81,7 +81,7 @@ class PieceSummer {
   /// @param range  of pieces whose fingerprints are needed
   void prepare(const SumRequest& request, PieceRange range, int threads);
   /// The second half, of the last request that was prepared; from several threads at a time.
-  /// @throws SumError if there is no such range; Stopped
+  /// @throws SumError if none was prepared or there is no such range; Stopped
   SumOfReadings sum_prepared(PieceRange range, const SumOptions& options = {}) const;
 
   /// Moves the observations to a point of which fingerprints are wanted. @throws SumError if it does not fit

@@ -163,6 +163,7 @@ void PieceSummer::prepare(const SumRequest& request, PieceRange range, int threa
 }
 
 SumOfReadings PieceSummer::sum_prepared(PieceRange range, const SumOptions& options) const {
+  if (!stream_) throw SumError("no request for sums was prepared");
   if (range.first > range.last || range.last > head_.pieces)
     throw SumError(
         fmt::format("pieces {} to {} were asked for, but there are {}", range.first, range.last, head_.pieces));

@@ -143,6 +143,7 @@ TEST(SumOfReadings, GivesTheStreamTheBytesThatItHasByItself) {
 TEST(SumOfReadings, OfAPreparedRequestIsThatOfTheRequest) {
   TwoInstruments two;
   PieceSummer summer(two.problem), prepared(two.problem);
+  EXPECT_THROW(prepared.sum_prepared({0, 0}), SumError);
   for (const SumKind kind : {SumKind::gradient, SumKind::normal, SumKind::norms}) {
     const SumRequest request = request_of(two.problem, kind);
     prepared.prepare(request, {0, 15}, 2);
