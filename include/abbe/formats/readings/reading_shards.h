@@ -29,7 +29,7 @@ struct ShardSource {
   std::shared_ptr<const Instrument> device;
   std::string setup;
   bool noise_from_data = false;
-  std::size_t drawn = 0;  ///< about so many readings are kept in memory
+  std::size_t drawn = 0;  ///< about so many readings are kept in memory (drawn())
   int threads = 0;
   WorkDriver work{};  ///< who checks the readings; empty: this process
   std::stop_token stop{};
@@ -45,6 +45,8 @@ class ReadingShards {
  public:
   /// Readings that are parsed together, a multiple of Observations::kBlockSize.
   static constexpr std::size_t kTogether = 4096;
+  /// How many such parts make a block of numbered work: one of few, so that every process gets some.
+  static std::size_t parts_together(std::size_t parts);
 
   /// @throws InputError as the readers of the files do, with the line of the file; Stopped
   explicit ReadingShards(ShardSource source);

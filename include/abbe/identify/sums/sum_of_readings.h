@@ -84,13 +84,14 @@ class PieceSummer {
   /// @throws SumError if none was prepared or there is no such range; Stopped
   SumOfReadings sum_prepared(PieceRange range, const SumOptions& options = {}) const;
 
-  /// Moves the observations to a point of which fingerprints are wanted. @throws SumError if it does not fit
+  /// Moves the observations to the point at which fingerprints are wanted. @throws SumError if it does not fit
   void prepare_fingerprints(const ReadingPoint& reference);
-  /// Of the readings of a piece at that point; from several threads at a time.
+  /// Fingerprint of the readings of a piece at that point; from several threads at a time.
   std::uint64_t fingerprint(std::size_t piece) const;
-  /// Fingerprints of all pieces at a point, which are not taken again.
+  /// Takes over the fingerprints of all pieces at a point, so that they are not computed again.
+  /// @throws SumError if there are more or fewer than pieces
   void set_fingerprints(const ReadingPoint& reference, std::vector<std::uint64_t> fingerprints);
-  /// Those at a point if all of them are known.
+  /// Fingerprints of all pieces at a point; null if they are not known.
   const std::vector<std::uint64_t>* known_fingerprints(const ReadingPoint& reference) const;
 
  private:
@@ -124,7 +125,7 @@ class Summation {
       std::function<std::vector<std::uint64_t>(const ReadingPoint& reference, const std::stop_token& stop)>;
 
   Summation() = default;
-  /// @param fingerprints  for readings that take long to read; empty: whoever checks the sums evaluates all readings
+  /// @param fingerprints  empty: the sums are checked with fingerprints that take a pass over all readings
   template <class Callable>
   requires std::is_constructible_v<Sum, Callable> Summation(Callable sum, Fingerprints fingerprints = {})
       : sum_(std::move(sum)), fingerprints_(std::move(fingerprints)) {}

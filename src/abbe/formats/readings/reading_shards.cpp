@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <span>
 #include <utility>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/readings/outermost_readings.h"
-#include "abbe/formats/readings/readings_bytes.h"
+#include "abbe/formats/readings/checked_parts.h"
 #include "abbe/formats/readings/shard_table.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/digest.h"
@@ -32,58 +30,6 @@ bool is_drawn(std::size_t reading, std::size_t wanted, std::size_t count) {
   RandomStream random(0x5eed, reading);
   return random.uniform() * static_cast<double>(count) < static_cast<double>(wanted);
 }
-
-/// What is found in some parts when they are checked.
-struct CheckedParts {
-  std::vector<std::uint64_t> fingerprints;  ///< [parts]
-  OutermostReadings outermost;
-  /// Those that are drawn and those that are outermost among these, with their numbers among all.
-  InstrumentReadings kept;
-  std::vector<std::size_t> numbers;
-
-  void keep(const InstrumentReadings& readings, std::size_t first, const std::vector<std::size_t>& wanted) {
-    if (wanted.empty()) return;
-    InstrumentReadings some = readings.subset(wanted);
-    if (kept.count() == 0) {
-      kept = std::move(some);
-    } else {
-      kept.append(some, true);
-    }
-    for (const std::size_t k : wanted) numbers.push_back(first + k);
-  }
-};
-
-void pack_checked(const CheckedParts& parts, std::vector<std::byte>& bytes) {
-  std::vector<std::uint64_t> numbers = parts.fingerprints;
-  numbers.push_back(parts.numbers.size());
-  numbers.insert(numbers.end(), parts.numbers.begin(), parts.numbers.end());
-  const auto of_numbers = std::as_bytes(std::span(numbers));
-  bytes.insert(bytes.end(), of_numbers.begin(), of_numbers.end());
-  parts.outermost.pack(bytes);
-  pack_readings(parts.kept, bytes);
-}
-
-/// @param count  of parts
-CheckedParts unpack_checked(std::span<const std::byte> bytes, std::size_t count) {
-  const auto take = [&] {
-    std::uint64_t number = 0;
-    if (bytes.size() < sizeof(number)) throw WorkError("what was found in some rows is cut off");
-    std::memcpy(&number, bytes.data(), sizeof(number));
-    bytes = bytes.subspan(sizeof(number));
-    return number;
-  };
-  CheckedParts parts;
-  for (std::size_t k = 0; k < count; ++k) parts.fingerprints.push_back(take());
-  for (std::uint64_t k = take(); k > 0; --k) parts.numbers.push_back(static_cast<std::size_t>(take()));
-  parts.outermost = OutermostReadings::unpack(bytes);
-  parts.kept = unpack_readings(bytes);
-  require_unpacked(bytes);
-  if (parts.kept.count() != parts.numbers.size()) throw WorkError("readings have other numbers than they should");
-  return parts;
-}
-
-/// Parts that are checked together: with few, every process gets some.
-constexpr std::size_t kMostTogether = 8, kBlocks = 256;
 
 }  // namespace
 
@@ -194,7 +140,7 @@ void ReadingShards::Implementation::check_all_rows() {
     contradictions.insert(contradictions.end(), file.contradictions.begin(), file.contradictions.end());
   }
   const std::vector<std::string> names = device->target_names();
-  const std::size_t together = std::clamp<std::size_t>(parts.size() / kBlocks, 1, kMostTogether);
+  const std::size_t together = ReadingShards::parts_together(parts.size());
   checked.resize((parts.size() + together - 1) / together);
   const auto last_of = [&](std::size_t block) { return std::min((block + 1) * together, parts.size()); };
   NumberedWork work{.name = "check of the readings", .blocks = checked.size(), .threads = source.threads};
@@ -212,9 +158,9 @@ void ReadingShards::Implementation::check_all_rows() {
   work.compute = [&](std::size_t block) {
     for (std::size_t i = block * together; i < last_of(block); ++i) check_part(i, names, checked[block]);
   };
-  work.pack = [&](std::size_t block, std::vector<std::byte>& bytes) { pack_checked(checked[block], bytes); };
+  work.pack = [&](std::size_t block, std::vector<std::byte>& bytes) { checked[block].pack(bytes); };
   work.unpack = [&](std::size_t block, std::span<const std::byte> bytes) {
-    checked[block] = unpack_checked(bytes, last_of(block) - block * together);
+    checked[block] = CheckedParts::unpack(bytes, last_of(block) - block * together);
   };
   work.finished = [&](std::size_t block) {
     for (std::size_t i = block * together; i < last_of(block); ++i) advance(files[parts[i].file]->bytes_of(parts[i]));
@@ -279,6 +225,12 @@ ReadingShards::ReadingShards(ShardSource source)
 }
 
 ReadingShards::~ReadingShards() = default;
+
+std::size_t ReadingShards::parts_together(std::size_t parts) {
+  constexpr std::size_t kBlocks = 256, kMostTogether = 8;
+  return std::clamp<std::size_t>(parts / kBlocks, 1, kMostTogether);
+}
+
 std::size_t ReadingShards::count() const { return implementation_->count; }
 std::size_t ReadingShards::file_count() const { return implementation_->files.size(); }
 std::uint64_t ReadingShards::fingerprint() const { return implementation_->fingerprint; }

@@ -116,9 +116,7 @@ void PieceSummer::prepare_fingerprints(const ReadingPoint& reference) {
 }
 
 std::uint64_t PieceSummer::fingerprint(std::size_t piece) const {
-  std::vector<std::uint64_t> all(pieces_.size());
-  take_fingerprints(stated_, pieces_, {piece, piece + 1}, 1, all);
-  return all[piece];
+  return fingerprint_of_readings(stated_, pieces_[piece]);
 }
 
 void PieceSummer::set_fingerprints(const ReadingPoint& reference, std::vector<std::uint64_t> fingerprints) {

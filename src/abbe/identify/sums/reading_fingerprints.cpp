@@ -40,25 +40,28 @@ ReadingPoint reference_point(const Problem& stated) {
   return point;
 }
 
+std::uint64_t fingerprint_of_readings(const Problem& stated, const ReadingPiece& piece) {
+  const Observations& observations = *stated.observations[piece.observations].observations;
+  const std::size_t rows = static_cast<std::size_t>(observations.rows());
+  Digest digest;
+  digest.add(piece.observations);
+  digest.add(piece.first);
+  digest.add(rows);
+  std::vector<double> residuals(rows * Observations::kBlockSize);
+  for (std::size_t first = piece.first; first < piece.last; first += Observations::kBlockSize) {
+    const std::size_t count = std::min(Observations::kBlockSize, piece.last - first);
+    observations.evaluate(first, count, {}, {}, residuals.data(), nullptr, rows * count);
+    for (std::size_t k = 0; k < rows * count; ++k) digest.add_number(residuals[k]);
+    for (std::size_t k = 0; k < count; ++k)
+      for (const double position : observations.positions(first + k)) digest.add_number(position);
+  }
+  return digest.value();
+}
+
 void take_fingerprints(const Problem& stated, const std::vector<ReadingPiece>& pieces, PieceRange range, int threads,
                        std::vector<std::uint64_t>& out) {
   for_each_block(range.count(), threads, [&](std::size_t i) {
-    const ReadingPiece& piece = pieces[range.first + i];
-    const Observations& observations = *stated.observations[piece.observations].observations;
-    const std::size_t rows = static_cast<std::size_t>(observations.rows());
-    Digest digest;
-    digest.add(piece.observations);
-    digest.add(piece.first);
-    digest.add(rows);
-    std::vector<double> residuals(rows * Observations::kBlockSize);
-    for (std::size_t first = piece.first; first < piece.last; first += Observations::kBlockSize) {
-      const std::size_t count = std::min(Observations::kBlockSize, piece.last - first);
-      observations.evaluate(first, count, {}, {}, residuals.data(), nullptr, rows * count);
-      for (std::size_t k = 0; k < rows * count; ++k) digest.add_number(residuals[k]);
-      for (std::size_t k = 0; k < count; ++k)
-        for (const double position : observations.positions(first + k)) digest.add_number(position);
-    }
-    out[range.first + i] = digest.value();
+    out[range.first + i] = fingerprint_of_readings(stated, pieces[range.first + i]);
   });
 }
 

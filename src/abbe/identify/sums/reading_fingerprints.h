@@ -14,8 +14,10 @@ Problem as_stated(const Problem& problem);
 /// models which agree at zero errors are told apart.
 ReadingPoint reference_point(const Problem& stated);
 
-/// Fingerprints of the readings of pieces: of all residuals at the present point of the observations, which hold
+/// Fingerprint of the readings of a piece: of all residuals at the present point of the observations, which hold
 /// readings, uncertainties and model, and of the axis commands.
+std::uint64_t fingerprint_of_readings(const Problem& stated, const ReadingPiece& piece);
+/// Those of several pieces.
 /// @param out  [pieces.size()]; only those of `range` are set
 void take_fingerprints(const Problem& stated, const std::vector<ReadingPiece>& pieces, PieceRange range, int threads,
                        std::vector<std::uint64_t>& out);

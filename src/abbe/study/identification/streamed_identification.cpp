@@ -3,20 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 
 #include "abbe/formats/readings/streamed_observations.h"
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/digest.h"
-#include "abbe/geometry/numbered_work.h"
-#include "abbe/geometry/parallel_blocks.h"
-#include "abbe/geometry/stopped.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/identify/normal_equations.h"
+#include "abbe/study/identification/streamed_norms.h"
+#include "abbe/study/identification/streamed_sums.h"
 
 namespace abbe {
 namespace {
@@ -43,171 +40,6 @@ void require_streamable(const Study& study, const Setup& setup) {
   refuse_if(setup.drift.has_value(), "setup.drift", "a drift of the set-up", "set-ups that stand still");
   refuse_if(!study.channels.files.empty() || !setup.channels.files.empty(), "channel", "recorded channels",
             "columns of the states in the files of readings");
-}
-
-/// Sums of the readings on disk as numbered work, so that finished ones can be kept in a file and shared by processes.
-class StreamedSums {
- public:
-  StreamedSums(Problem problem, std::uint64_t readings, int threads, const IdentificationJob& job)
-      : summer_(std::move(problem)),
-        readings_(readings),
-        threads_(threads),
-        driver_(job.work),
-        progress_(job.progress) {}
-
-  SumOfReadings operator()(const SumRequest& request, const std::stop_token& stop) {
-    summer_.prepare(request, {0, summer_.piece_count()}, threads_);
-    std::vector<SumOfReadings> parts(request.pieces);
-    std::size_t done = 0;
-    NumberedWork work{.name = "sums over the readings", .blocks = parts.size(), .threads = threads_};
-    work.is_followed = true;
-    work.for_all = true;
-    work.fingerprint = [&] { return fingerprint(request); };
-    work.compute = [&](std::size_t piece) {
-      stop_if_asked(stop);
-      parts[piece] = summer_.sum_prepared({piece, piece + 1}, {1, stop, {}});
-    };
-    work.pack = [&](std::size_t piece, std::vector<std::byte>& bytes) {
-      const std::vector<std::byte> sum = to_bytes(parts[piece]);
-      bytes.insert(bytes.end(), sum.begin(), sum.end());
-    };
-    work.unpack = [&](std::size_t piece, std::span<const std::byte> bytes) {
-      try {
-        parts[piece] = sum_from_bytes(bytes);
-      } catch (const SumError& error) {
-        throw WorkError(error.what());
-      }
-      if (!(parts[piece].range == PieceRange{piece, piece + 1})) throw WorkError("a sum is of another piece");
-    };
-    // Nobody knows how many sums the solver will ask for; this is how far the present one has come.
-    work.finished = [&](std::size_t) {
-      if (progress_) progress_(++done, parts.size());
-    };
-    do_work(driver_, work);
-    return merge_all(std::move(parts));
-  }
-
-  /// Of the readings of all pieces, as Summation has it.
-  std::vector<std::uint64_t> fingerprints(const ReadingPoint& reference, const std::stop_token& stop) {
-    if (const std::vector<std::uint64_t>* known = summer_.known_fingerprints(reference)) return *known;
-    summer_.prepare_fingerprints(reference);
-    std::vector<std::uint64_t> all(summer_.piece_count());
-    NumberedWork work{.name = "fingerprints of the readings", .blocks = all.size(), .threads = threads_};
-    work.is_followed = true;
-    work.for_all = true;
-    work.is_kept = false;
-    work.fingerprint = [&] {
-      Digest digest;
-      digest.add_text("fingerprints of the readings");
-      digest.add_text(vector_instructions());
-      digest.add(readings_);
-      digest.add_numbers(reference.machine);
-      for (const std::vector<double>& setup : reference.setups) digest.add_numbers(setup);
-      return digest.value();
-    };
-    work.compute = [&](std::size_t piece) {
-      stop_if_asked(stop);
-      all[piece] = summer_.fingerprint(piece);
-    };
-    work.pack = [&](std::size_t piece, std::vector<std::byte>& bytes) {
-      const auto own = std::as_bytes(std::span(&all[piece], 1));
-      bytes.insert(bytes.end(), own.begin(), own.end());
-    };
-    work.unpack = [&](std::size_t piece, std::span<const std::byte> bytes) {
-      const auto own = std::as_writable_bytes(std::span(&all[piece], 1));
-      if (bytes.size() != own.size()) throw WorkError("a fingerprint is cut off");
-      std::copy(bytes.begin(), bytes.end(), own.begin());
-    };
-    do_work(driver_, work);
-    summer_.set_fingerprints(reference, all);
-    return all;
-  }
-
- private:
-  /// Of the request, and of all readings and the model: residuals at a point near that of the start.
-  std::uint64_t fingerprint(const SumRequest& request) const {
-    Digest digest;
-    digest.add_text("sums of single pieces");
-    digest.add_text(vector_instructions());
-    digest.add_bytes(to_bytes(request));
-    digest.add(readings_);
-    if (const std::vector<std::uint64_t>* known = summer_.known_fingerprints(request.reference)) {
-      for (const std::uint64_t of_piece : *known) digest.add(of_piece);
-    }
-    return digest.value();
-  }
-
-  PieceSummer summer_;
-  std::uint64_t readings_;
-  int threads_;
-  WorkDriver driver_;
-  ProgressCallback progress_;
-};
-
-/// What is said of all readings after the fit, without keeping anything of each.
-struct NormTally {
-  double beyond = 0;  ///< number of readings
-  double largest = 0;
-  double reading = 0;  ///< number of the first one that has it
-
-  void take(const NormTally& other) {
-    beyond += other.beyond;
-    if (other.largest > largest || (other.largest == largest && other.reading < reading)) {
-      largest = other.largest;
-      reading = other.reading;
-    }
-  }
-};
-
-NormTally tally_part(const Observations& observations, double limit, std::size_t first, std::size_t last) {
-  constexpr std::size_t kBlock = Observations::kBlockSize;
-  const std::size_t rows = static_cast<std::size_t>(observations.rows());
-  NormTally own;
-  std::vector<double> residuals(rows * kBlock);
-  for (; first < last; first += kBlock) {
-    const std::size_t n = std::min(kBlock, last - first);
-    observations.evaluate(first, n, {}, {}, residuals.data(), nullptr, rows * n);
-    for (std::size_t k = 0; k < n; ++k) {
-      double square = 0;
-      for (std::size_t row = 0; row < rows; ++row) square += residuals[row * n + k] * residuals[row * n + k];
-      const double norm = std::sqrt(square);
-      if (norm > limit) own.beyond += 1;
-      if (norm > own.largest) own.largest = norm, own.reading = static_cast<double>(first + k);
-    }
-  }
-  return own;
-}
-
-/// @param fingerprint  of readings and estimates
-NormTally tally_norms(const Observations& observations, double limit, std::uint64_t fingerprint, int threads,
-                      const WorkDriver& driver) {
-  constexpr std::size_t kBlocks = 256, kMostTogether = 8;
-  const std::size_t count = observations.reading_count(),
-                    parts = (count + ReadingShards::kTogether - 1) / ReadingShards::kTogether,
-                    together = ReadingShards::kTogether * std::clamp<std::size_t>(parts / kBlocks, 1, kMostTogether);
-  std::vector<NormTally> tallies((count + together - 1) / together);
-  NumberedWork work{.name = "norms of the residuals", .blocks = tallies.size(), .threads = threads};
-  work.is_followed = true;
-  work.for_all = true;
-  work.is_kept = false;
-  work.fingerprint = [&] { return fingerprint; };
-  work.compute = [&](std::size_t block) {
-    tallies[block] = tally_part(observations, limit, block * together, std::min(count, (block + 1) * together));
-  };
-  work.pack = [&](std::size_t block, std::vector<std::byte>& bytes) {
-    const NormTally& own = tallies[block];
-    pack_numbers(std::array{own.beyond, own.largest, own.reading}, bytes);
-  };
-  work.unpack = [&](std::size_t block, std::span<const std::byte> bytes) {
-    std::array<double, 3> numbers{};
-    unpack_numbers(bytes, numbers);
-    require_unpacked(bytes);
-    tallies[block] = {numbers[0], numbers[1], numbers[2]};
-  };
-  do_work(driver, work);
-  NormTally total;
-  for (const NormTally& own : tallies) total.take(own);
-  return total;
 }
 
 void list_kept_outliers(const Problem& kept, double quantile, Identification& identified) {
@@ -321,7 +153,7 @@ void identify_streamed(const Study& study, const IdentifyOptions& given, const I
   IdentifyOptions options = given;
   options.list_outliers = false;
   options.solver.summation =
-      Summation([sums](const SumRequest& request, const std::stop_token& stop) { return (*sums)(request, stop); },
+      Summation([sums](const SumRequest& request, const std::stop_token& stop) { return sums->sum(request, stop); },
                 [sums](const ReadingPoint& reference, const std::stop_token& stop) {
                   return sums->fingerprints(reference, stop);
                 });
