@@ -47,7 +47,7 @@ void add_identify_command(CommandLine& line) {
                             .map = false,
                             .progress = [&](StudyStep step, std::size_t done,
                                             std::size_t total) { progress.show(step_words(study, step), done, total); },
-                            .summation = work.summation(study),
+                            .summation = work.summation(),
                             .work = work.driver()});
       progress.end();
       if (!work.is_first()) return kDone;

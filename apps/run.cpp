@@ -62,7 +62,7 @@ void add_run_command(CommandLine& line) {
           run_study(study, {.accept_misfit = options->accept_misfit,
                             .progress = [&](StudyStep step, std::size_t done,
                                             std::size_t total) { progress.show(step_words(study, step), done, total); },
-                            .summation = work.summation(study),
+                            .summation = work.summation(),
                             .work = work.driver()});
       progress.end();
       if (!work.is_first()) return kDone;

@@ -33,7 +33,7 @@ class MpiGroup : public ProcessGroup {
   ~MpiGroup() override;
 
   bool is_first() const override { return rank_ == 0; }
-  Summation summation(const Study& study) override;
+  Summation summation() override;
   void work(const NumberedWork& work) override;
   WorkInStep in_step() override;
 
@@ -83,7 +83,7 @@ class MpiGroup : public ProcessGroup {
   void send_in_pieces(std::span<const int> to, int tag, const Bytes& bytes);
   bool is_last_piece(std::span<const std::byte> piece) const { return piece.size() < piece_bytes_; }
 
-  SumOfReadings sum(PieceSummer& summer, const SumRequest& request, int threads, const std::stop_token& stop);
+  SumOfReadings sum(const SumRequest& request, const Summation::Here& here, const std::stop_token& stop);
 
   // Messages.
   int length_of(std::span<const std::byte> bytes, int to) const;

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "abbe/geometry/digest.h"
-#include "abbe/study/study_steps.h"
 #include "messages_of_work.h"
 #include "mpi_group.h"
 
@@ -24,20 +23,17 @@ void append(std::vector<std::byte>& all, std::span<const std::byte> following) {
 
 }  // namespace
 
-Summation MpiGroup::summation(const Study& study) {
+Summation MpiGroup::summation() {
   if (size_ == 1) return {};
-  // Made when the first sum is asked for, after the study has read the same readings.
-  const auto summer = std::make_shared<std::optional<PieceSummer>>();
-  return [this, study, summer](const SumRequest& request, const std::stop_token& stop) {
-    if (!*summer) summer->emplace(prepared_problem(study));
-    return sum(**summer, request, study.threads, stop);
-  };
+  return Summation([this](const SumRequest& request, const Summation::Here& here, const std::stop_token& stop) {
+    return sum(request, here, stop);
+  });
 }
 
-SumOfReadings MpiGroup::sum(PieceSummer& summer, const SumRequest& request, int threads, const std::stop_token& stop) {
+SumOfReadings MpiGroup::sum(const SumRequest& request, const Summation::Here& here, const std::stop_token& stop) {
   const PieceRange range =
       share_of_pieces(request.pieces, static_cast<std::size_t>(rank_), static_cast<std::size_t>(size_));
-  SumOfReadings own = summer.sum(request, range, {.threads = threads, .stop = stop});
+  SumOfReadings own = here(range);
   if (!is_first()) {
     std::vector<std::byte> bytes;
     if (range.count() > 0) put_bytes(to_bytes(own), bytes);

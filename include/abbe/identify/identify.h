@@ -107,5 +107,9 @@ Identification identify(Problem& problem, const IdentifyOptions& options = {});
 /// Residuals of one set of readings at the values at which its observations stand: [reading_count * rows], the rows of
 /// one reading next to each other.
 std::vector<double> residuals_by_reading(const Observations& observations, int threads = 0);
+/// Measured - modelled of them, in the same order: not weighted, mm or rad as the components say.
+std::vector<double> deviations_by_reading(const Observations& observations, int threads = 0);
+/// Lengths of these, angles left out: [reading_count], mm; -1 where nothing but angles is read.
+std::vector<double> lengths_by_reading(const Observations& observations, int threads = 0);
 
 }  // namespace abbe

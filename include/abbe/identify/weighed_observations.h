@@ -59,6 +59,9 @@ class WeighedObservations : public Observations {
   std::vector<double> unknown_values() const override { return observations_->unknown_values(); }
   std::vector<double> positions(std::size_t reading) const override { return observations_->positions(reading); }
   std::vector<double> deviation(std::size_t reading) const override { return observations_->deviation(reading); }
+  void deviations(std::size_t first, std::size_t count, double* out) const override {
+    observations_->deviations(first, count, out);
+  }
   void set_parameters(std::span<const double> machine, std::span<const double> setup) override;
   void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,

@@ -29,6 +29,7 @@ class InstrumentObservations : public Observations {
   std::vector<double> unknown_values() const override;
   std::vector<double> positions(std::size_t reading) const override;
   std::vector<double> deviation(std::size_t reading) const override;
+  void deviations(std::size_t first, std::size_t count, double* out) const override;
   void set_parameters(std::span<const double> machine, std::span<const double> setup) override;
   void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,

@@ -64,6 +64,10 @@ class Observations {
 
   /// Measured - modelled of one reading at the present point, not weighted, [rows()], mm or rad as components() say.
   virtual std::vector<double> deviation(std::size_t reading) const = 0;
+  /// The same of readings first .. first + count - 1. Thread-safe.
+  /// @param count  at most kBlockSize
+  /// @param out    out, out[row * count + k]
+  virtual void deviations(std::size_t first, std::size_t count, double* out) const;
 
   /// Sets the point at which evaluate() works. Not thread-safe against evaluate().
   /// @param machine  values of ErrorSet::parameters() of the model the observations were built with

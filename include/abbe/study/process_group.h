@@ -1,6 +1,5 @@
 #pragma once
 
-#include "abbe/formats/study/study.h"
 #include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/work_in_step.h"
 #include "abbe/identify/sums/sum_of_readings.h"
@@ -13,8 +12,9 @@ class ProcessGroup {
  public:
   virtual ~ProcessGroup() = default;
   virtual bool is_first() const = 0;
-  /// Distributes the readings of the study. Every process calls it and gets the same sums.
-  virtual Summation summation(const Study& study) = 0;
+  /// Distributes the pieces of readings. Every process identifies with it, from the same readings, and gets the same
+  /// sums.
+  virtual Summation summation() = 0;
   /// Distributes the blocks. Every process calls it with the same work. What is there already, and
   /// NumberedWork::finished, count in the first one.
   virtual void work(const NumberedWork& work) = 0;

@@ -26,7 +26,7 @@ class SharedWork {
   /// False for all other processes: they write nothing, and end when the first one does.
   bool is_first() const { return processes_ == nullptr || processes_->is_first(); }
   /// As RunOptions::summation; empty where there is one process.
-  Summation summation(const Study& study) const;
+  Summation summation() const;
   /// As RunOptions::work. Not to be used after this object has ended.
   WorkDriver driver() const;
   /// Options of a job that shares its numbered work and its work in step. Not to be used after this object has ended.

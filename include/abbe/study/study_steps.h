@@ -40,7 +40,4 @@ VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult
 StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress = {},
                    const WorkDriver& work = {});
 
-/// Adds the length of measured - modelled of a reading (mm), if any of its components is a length.
-void append_length(const Observations& observations, std::size_t reading, std::vector<double>& lengths);
-
 }  // namespace abbe

@@ -54,10 +54,9 @@ nb::object residuals(const StudyOutcome& outcome, const std::string& name) {
   const auto rows = static_cast<std::size_t>(observations.rows());
   const std::size_t count = observations.reading_count();
   Columns<double> result(rows, count);
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::vector<double> deviation = observations.deviation(k);
-    for (std::size_t r = 0; r < rows; ++r) result[r][k] = deviation[r];
-  }
+  const std::vector<double> deviations = deviations_by_reading(observations);
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t k = 0; k < count; ++k) result[r][k] = deviations[k * rows + r];
   return result.release({rows}, false);
 }
 

@@ -408,10 +408,20 @@ std::vector<std::vector<double>> ReadingStream::all_pieces(const Eigen::VectorXd
   }
   stop_if_asked(self.stop);
   const SumRequest request = self.request(point, kind, loss, covariance);
-  SumOfReadings sum = self.summation(request, self.stop);
   const std::vector<ReadingPiece> pieces = self.pieces_for(kind);
-  check_sum(sum, request, self.problem, pieces,
-            kind == SumKind::poses ? fingerprints_of_poses(pieces, self.pieces, self.fingerprints) : self.fingerprints);
+  const std::vector<std::uint64_t> readings =
+      kind == SumKind::poses ? fingerprints_of_poses(pieces, self.pieces, self.fingerprints) : self.fingerprints;
+  const Summation::Here here = [&](PieceRange range) {
+    set_observations(self.problem, point);
+    SumOfReadings own = begin_sum(request);
+    own.range = range;
+    own.readings.assign(readings.begin() + static_cast<std::ptrdiff_t>(range.first),
+                        readings.begin() + static_cast<std::ptrdiff_t>(range.last));
+    own.values = sum_pieces(kind, loss, covariance, range, {self.threads, self.stop, {}});
+    return own;
+  };
+  SumOfReadings sum = self.summation(request, here, self.stop);
+  check_sum(sum, request, self.problem, pieces, readings);
   set_observations(self.problem, point);
   return std::move(sum.values);
 }

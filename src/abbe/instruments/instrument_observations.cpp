@@ -437,24 +437,30 @@ bool InstrumentObservations::displacement_rows(std::size_t first, std::size_t co
 
 std::vector<double> InstrumentObservations::deviation(std::size_t reading) const {
   std::vector<double> result(implementation_->rows());
-  evaluate(reading, 1, {}, {}, result.data(), nullptr, 0);
-  implementation_->weights.unweight(reading, result.data());
+  deviations(reading, 1, result.data());
   return result;
+}
+
+void InstrumentObservations::deviations(std::size_t first, std::size_t count, double* out) const {
+  const Implementation& own = *implementation_;
+  evaluate(first, count, {}, {}, out, nullptr, 0);
+  double of_reading[kMaxRows];
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t row = 0; row < own.rows(); ++row) of_reading[row] = out[row * count + k];
+    own.weights.unweight(first + k, of_reading);
+    for (std::size_t row = 0; row < own.rows(); ++row) out[row * count + k] = of_reading[row];
+  }
 }
 
 std::vector<std::vector<double>> InstrumentObservations::modelled() const {
   const Implementation& own = *implementation_;
   std::vector<std::vector<double>> result = own.readings.measured;
-  std::vector<double> residuals(own.rows() * kBlockSize);
+  std::vector<double> apart(own.rows() * kBlockSize);
   for (std::size_t first = 0; first < own.readings.count(); first += kBlockSize) {
     const std::size_t n = std::min(kBlockSize, own.readings.count() - first);
-    evaluate(first, n, {}, {}, residuals.data(), nullptr, 0);
-    for (std::size_t k = 0; k < n; ++k) {
-      double deviations[kMaxRows];
-      for (std::size_t row = 0; row < own.rows(); ++row) deviations[row] = residuals[row * n + k];
-      own.weights.unweight(first + k, deviations);
-      for (std::size_t row = 0; row < own.rows(); ++row) result[row][first + k] -= deviations[row];
-    }
+    deviations(first, n, apart.data());
+    for (std::size_t row = 0; row < own.rows(); ++row)
+      for (std::size_t k = 0; k < n; ++k) result[row][first + k] -= apart[row * n + k];
   }
   return result;
 }

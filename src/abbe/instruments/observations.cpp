@@ -20,6 +20,13 @@ void Observations::evaluate_factored(std::size_t, std::size_t, std::span<const s
   throw std::logic_error(name() + ": the Jacobian has no factors");
 }
 
+void Observations::deviations(std::size_t first, std::size_t count, double* out) const {
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::vector<double> apart = deviation(first + k);
+    for (std::size_t row = 0; row < apart.size(); ++row) out[row * count + k] = apart[row];
+  }
+}
+
 std::optional<double> Observations::length_of_deviation(std::size_t reading) const {
   const std::vector<double> apart = deviation(reading);
   double square = -1;

@@ -135,6 +135,7 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
   ErrorSet errors;
   std::optional<ErrorSet> initial;
   if (plan.initial_errors) initial = read_errors(*plan.initial_errors, study.machine, StatesOfErrors::allowed).errors;
+  std::vector<std::vector<double>> positions_of(study.machine.axes.size());  // of axes that were asked for
   for (const IdentifiedMotion& identified : plan.motions) {
     if (identified.expansion) {
       // Known over the whole length of the scale, whatever was measured.
@@ -147,7 +148,8 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
       continue;
     }
     const Axis& axis = study.machine.axes[identified.axis];
-    const std::vector<double> positions = measured_positions(study.machine, campaign, identified.axis);
+    std::vector<double>& positions = positions_of[identified.axis];
+    if (positions.empty()) positions = measured_positions(study.machine, campaign, identified.axis);
     ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}, identified.state};
     Basis& basis = motion.basis;
     if (positions.size() < 2) {

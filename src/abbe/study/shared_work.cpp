@@ -14,9 +14,7 @@ SharedWork::SharedWork(ProcessGroup* processes, const std::string& output,
 
 SharedWork::~SharedWork() = default;
 
-Summation SharedWork::summation(const Study& study) const {
-  return processes_ == nullptr ? Summation() : processes_->summation(study);
-}
+Summation SharedWork::summation() const { return processes_ == nullptr ? Summation() : processes_->summation(); }
 
 WorkDriver SharedWork::driver() const {
   WorkDriver inner;

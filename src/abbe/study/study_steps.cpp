@@ -49,15 +49,6 @@ IdentifyOptions identify_options(const Study& study) {
   return options;
 }
 
-void append_length(const Observations& observations, std::size_t reading, std::vector<double>& lengths) {
-  const std::vector<double> deviation = observations.deviation(reading);
-  double square = -1;
-  for (std::size_t row = 0; row < deviation.size(); ++row) {
-    if (!observations.components()[row].is_angle) square = std::max(square, 0.0) + deviation[row] * deviation[row];
-  }
-  if (square >= 0) lengths.push_back(std::sqrt(square));
-}
-
 void prepare_study(const Study& study, StudyResult& result) {
   find_start_values(study.machine, result.campaign);
   result.model = build_model(study, result.campaign);

@@ -22,12 +22,19 @@ struct PieceRange {
   bool operator==(const PieceRange&) const = default;
 };
 
+/// Number of readings of a piece that is not the last of its observations.
+///
+/// It is a multiple of Observations::kBlockSize, the least with which the blocks make no more than 48 pieces; for more
+/// than 3.1 million readings no more than one piece per 65,536 readings, at most 256. From 32,768 readings on it is
+/// rounded up to a multiple of 4096.
+/// @param blocks  of all observations
+std::size_t readings_of_piece(std::size_t blocks);
+
 /// Divides the readings of a problem, used or not, into pieces.
 ///
-/// A piece holds readings of one set of observations, one after the other: a multiple of Observations::kBlockSize, or
-/// the rest. The multiple is the least with which the blocks of all observations make no more than 48 pieces; as every
-/// set of observations begins a piece of its own, there may be as many more as there are sets. The division depends on
-/// the numbers of readings only.
+/// A piece holds readings of one set of observations, one after the other: readings_of_piece(), or the rest. As every
+/// set of observations begins a piece of its own, there may be as many more pieces as there are sets. The division
+/// depends on the numbers of readings only.
 std::vector<ReadingPiece> divide_readings(const Problem& problem);
 
 /// The share of one of several processes: consecutive pieces, evenly; empty if there are more processes than pieces.

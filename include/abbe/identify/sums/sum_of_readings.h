@@ -33,6 +33,9 @@ struct SumOfReadings {
   std::vector<std::vector<double>> values;  ///< [range.count()]: see SumKind; {0} or nothing: no reading is used
 };
 
+/// What this process answers a request with, still without pieces: range, readings and values are empty.
+SumOfReadings begin_sum(const SumRequest& request);
+
 /// Both ranges as one; one of them may be empty.
 /// @param second  begins where the first ends
 /// @throws SumError if it does not, or if the sums are of different requests or processors
@@ -120,6 +123,11 @@ class PieceSummer {
 class Summation {
  public:
   using Sum = std::function<SumOfReadings(const SumRequest& request, const std::stop_token& stop)>;
+  /// The sum of a range of pieces, computed by the identification itself, in this process.
+  using Here = std::function<SumOfReadings(PieceRange range)>;
+  /// For processes that all run the same identification: each computes a share here and gives it to the others.
+  using SharedSum =
+      std::function<SumOfReadings(const SumRequest& request, const Here& here, const std::stop_token& stop)>;
   /// [pieces] of the readings at a point: what the sums are checked with.
   using Fingerprints =
       std::function<std::vector<std::uint64_t>(const ReadingPoint& reference, const std::stop_token& stop)>;
@@ -128,14 +136,22 @@ class Summation {
   /// @param fingerprints  empty: the sums are checked with fingerprints that take a pass over all readings
   template <class Callable>
   requires std::is_constructible_v<Sum, Callable> Summation(Callable sum, Fingerprints fingerprints = {})
-      : sum_(std::move(sum)), fingerprints_(std::move(fingerprints)) {}
+      : sum_([own = Sum(std::move(sum))](const SumRequest& request, const Here&, const std::stop_token& stop) {
+          return own(request, stop);
+        }),
+        fingerprints_(std::move(fingerprints)) {}
+  template <class Callable>
+  requires std::is_constructible_v<SharedSum, Callable>
+  explicit Summation(Callable sum) : sum_(std::move(sum)) {}
 
   explicit operator bool() const { return static_cast<bool>(sum_); }
-  SumOfReadings operator()(const SumRequest& request, const std::stop_token& stop) const { return sum_(request, stop); }
+  SumOfReadings operator()(const SumRequest& request, const Here& here, const std::stop_token& stop) const {
+    return sum_(request, here, stop);
+  }
   const Fingerprints& fingerprints() const { return fingerprints_; }
 
  private:
-  Sum sum_;
+  SharedSum sum_;
   Fingerprints fingerprints_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "abbe/geometry/cross_products.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/sums/pose_sums.h"
 #include "abbe/identify/sums/reading_fingerprints.h"
@@ -134,11 +133,7 @@ const std::vector<std::uint64_t>* PieceSummer::known_fingerprints(const ReadingP
 
 void PieceSummer::prepare(const SumRequest& request, PieceRange range, int threads) {
   check(request);
-  SumOfReadings head;
-  head.kind = request.kind;
-  head.point = point_fingerprint(request);
-  head.selection = selection_fingerprint(request);
-  head.processor = vector_instructions();
+  SumOfReadings head = begin_sum(request);
   if (request.kind == SumKind::poses) {
     select(request);
     const std::vector<ReadingPiece> poses = divide_poses(weighed_observations(selected_));

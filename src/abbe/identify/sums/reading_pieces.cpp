@@ -5,17 +5,29 @@
 namespace abbe {
 namespace {
 
-// More pieces than this cost more memory and reduction than they gain in balance.
-constexpr std::size_t kMostPieces = 48;
+// Few readings: more pieces cost more memory and reduction than they gain in balance. Many readings: so many processes
+// can share them, and the sums of all pieces still fit into one message of an MPI.
+constexpr std::size_t kFewPieces = 48, kMostPieces = 256;
+// Blocks of a piece before there are more than few.
+constexpr std::size_t kLongPiece = 512;
+// Readings in files are converted in parts of so many blocks. Long pieces hold whole ones, so that none is converted
+// for two pieces.
+constexpr std::size_t kPart = 32, kWholeParts = 8 * kPart;
 
 }  // namespace
+
+std::size_t readings_of_piece(std::size_t blocks) {
+  const std::size_t pieces = std::clamp((blocks + kLongPiece - 1) / kLongPiece, kFewPieces, kMostPieces);
+  const std::size_t together = std::max<std::size_t>(1, (blocks + pieces - 1) / pieces);
+  return Observations::kBlockSize * (together < kWholeParts ? together : (together + kPart - 1) / kPart * kPart);
+}
 
 std::vector<ReadingPiece> divide_readings(const Problem& problem) {
   constexpr std::size_t kBlock = Observations::kBlockSize;
   std::size_t blocks = 0;
   for (const SelectedObservations& selected : problem.observations)
     blocks += (selected.observations->reading_count() + kBlock - 1) / kBlock;
-  const std::size_t together = kBlock * std::max<std::size_t>(1, (blocks + kMostPieces - 1) / kMostPieces);
+  const std::size_t together = readings_of_piece(blocks);
   std::vector<ReadingPiece> pieces;
   for (std::size_t o = 0; o < problem.observations.size(); ++o) {
     const std::size_t count = problem.observations[o].observations->reading_count();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "abbe/geometry/cross_products.h"
 #include "abbe/identify/sums/byte_stream.h"
 
 namespace abbe {
@@ -36,6 +37,16 @@ void refuse_if_of_others(const SumOfReadings& first, const SumOfReadings& second
 }
 
 }  // namespace
+
+SumOfReadings begin_sum(const SumRequest& request) {
+  SumOfReadings sum;
+  sum.kind = request.kind;
+  sum.point = point_fingerprint(request);
+  sum.selection = selection_fingerprint(request);
+  sum.processor = vector_instructions();
+  sum.pieces = request.pieces;
+  return sum;
+}
 
 SumOfReadings merge(SumOfReadings first, SumOfReadings second) {
   if (second.range.count() == 0) return first;

@@ -88,6 +88,29 @@ TEST(ReadingPieces, CoverAllReadingsOnceInOrderAndDependOnTheirNumberOnly) {
   EXPECT_EQ(divide_readings(two.problem).size(), 15U);
 }
 
+TEST(ReadingPieces, OfMoreReadingsAreLongerAndThenMore) {
+  const auto pieces_of = [](std::size_t readings) {
+    const std::size_t blocks = (readings + Observations::kBlockSize - 1) / Observations::kBlockSize;
+    return (readings + readings_of_piece(blocks) - 1) / readings_of_piece(blocks);
+  };
+  EXPECT_EQ(readings_of_piece(0), 128U);
+  EXPECT_EQ(readings_of_piece(1), 128U);
+  EXPECT_EQ(readings_of_piece(48), 128U);
+  EXPECT_EQ(readings_of_piece(49), 256U);
+  EXPECT_EQ(readings_of_piece(255 * 48), 255 * 128U);
+  EXPECT_EQ(readings_of_piece(255 * 48 + 1), 32768U);
+  EXPECT_EQ(readings_of_piece(256 * 48 + 1), 32768U + 4096U);
+  EXPECT_EQ(pieces_of(3'000'000), 46U);
+  EXPECT_EQ(pieces_of(12'800'000), 196U);
+  EXPECT_EQ(pieces_of(100'000'000), 255U);
+  EXPECT_EQ(pieces_of(1'000'000'000), 256U);
+  for (std::size_t readings = 1; readings < 2'000'000'000; readings += 1 + readings / 7) {
+    const std::size_t pieces = pieces_of(readings);
+    EXPECT_LE(pieces, readings <= 3'145'728 ? 48U : 256U) << readings;
+    EXPECT_GE(pieces, std::min<std::size_t>(24, (readings + 127) / 128)) << readings;
+  }
+}
+
 TEST(ReadingPieces, AreSharedOutWholeAndEvenly) {
   for (const std::size_t processes : {1, 2, 3, 7, 20}) {
     std::size_t next = 0;
@@ -138,6 +161,30 @@ TEST(SumOfReadings, GivesTheStreamTheBytesThatItHasByItself) {
   EXPECT_EQ(here.norms(x), there.norms(x));
   EXPECT_EQ(here.orthogonal_factor(x, loss), there.orthogonal_factor(x, loss));
   EXPECT_EQ(sums, 5);
+}
+
+TEST(SumOfReadings, AreMadeByTheStreamItselfWhereProcessesShareThem) {
+  TwoInstruments two;
+  const Eigen::VectorXd x = present_values(two.problem);
+  bool lose = false;
+  const Summation shared([&](const SumRequest& request, const Summation::Here& here, const std::stop_token&) {
+    std::vector<SumOfReadings> parts;
+    for (const std::size_t process : {2, 0, 1}) {
+      if (lose && process == 1) continue;
+      parts.push_back(sum_from_bytes(to_bytes(here(share_of_pieces(request.pieces, process, 3)))));
+    }
+    return merge_all(std::move(parts));
+  });
+  const ReadingStream alone(two.problem, 2), together(two.problem, 2, shared);
+  const Loss loss{LossKind::huber, 0, 1};
+  const NormalEquations a = alone.sums(x, loss, Wanted::normal), b = together.sums(x, loss, Wanted::normal);
+  EXPECT_EQ(a.cost, b.cost);
+  EXPECT_EQ(a.gradient, b.gradient);
+  EXPECT_EQ(a.normal, b.normal);
+  EXPECT_EQ(alone.norms(x), together.norms(x));
+  EXPECT_EQ(alone.orthogonal_factor(x, loss), together.orthogonal_factor(x, loss));
+  lose = true;
+  EXPECT_THROW(together.sums(x, loss, Wanted::cost), SumError);
 }
 
 TEST(SumOfReadings, OfAPreparedRequestIsThatOfTheRequest) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "abbe/machine/state.h"
@@ -106,18 +107,20 @@ class SensorRanking {
 
   double squared_lengths(std::size_t block, const Eigen::VectorXd& estimates) const {
     set_observations(problem_, estimates);
-    std::vector<double> lengths;
+    double sum = 0;
+    std::size_t count = 0;
     for (std::size_t o = 0; o < problem_.observations.size(); ++o) {
       const SelectedObservations& selected = problem_.observations[o];
       for (std::size_t k = 0; k < blocks_[o].block.size(); ++k) {
         const bool used = selected.use.empty() || selected.use[k] != 0;
-        if (used && blocks_[o].block[k] == block) append_length(*selected.observations, k, lengths);
+        if (!used || blocks_[o].block[k] != block) continue;
+        const std::optional<double> length = selected.observations->length_of_deviation(k);
+        if (!length) continue;
+        sum += *length * *length;
+        ++count;
       }
     }
-    if (lengths.empty()) return std::nan("");
-    double sum = 0;
-    for (const double length : lengths) sum += length * length;
-    return sum / static_cast<double>(lengths.size());
+    return count == 0 ? std::nan("") : sum / static_cast<double>(count);
   }
 
   const Problem& problem_;

@@ -193,7 +193,7 @@ TEST(RankedSensors, ErrorsAreThoseOfIdentificationsWithoutTheirBlocks) {
       for (std::size_t k = 0; k < use.size(); ++k) {
         if (use[k] != 0) continue;
         for (std::size_t row = 0; row < 3; ++row) sum += residuals[3 * k + row] * residuals[3 * k + row], count += 1;
-        append_length(*training.observations[0].observations, k, lengths);
+        lengths.push_back(*training.observations[0].observations->length_of_deviation(k));
       }
       mean += sum / count / 10;
       for (const double length : lengths) mean_length += length * length / static_cast<double>(lengths.size()) / 10;

@@ -100,6 +100,11 @@ void expect_same(const Identification& a, const Identification& b) {
   EXPECT_EQ(a.statistics.degrees_of_freedom, b.statistics.degrees_of_freedom);
 }
 
+TEST_F(StreamedReadings, ArePartsOfOneLongPieceOnly) {
+  for (const std::size_t blocks : {std::size_t{256 * 48}, std::size_t{20000}, std::size_t{781250}})
+    EXPECT_EQ(readings_of_piece(blocks) % ReadingShards::kTogether, 0U) << blocks;
+}
+
 TEST_F(StreamedReadings, GiveTheBytesOfThoseInMemory) {
   const StudyResult in_memory = run(0), small_enough = run(1'000'000), streamed = run(1000);
   ASSERT_EQ(in_memory.identification.status, IdentifyStatus::converged);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "abbe/identify/identify.h"
 #include "abbe/study/identification/axis_mistakes.h"
 #include "abbe/study/identification/place_parts.h"
 
@@ -38,13 +39,14 @@ PlaceFit place_fit(const Machine& machine, const StartedInstrument& started, con
   result.explained.assign(readings.count(), 0);
   if (!fit.found || readings.count() == 0) return result;
   const std::unique_ptr<Observations> observations = started.instrument->observations(machine, ErrorSet{}, readings);
+  const std::vector<double> distances = lengths_by_reading(*observations);
   double squares = 0;
   std::size_t count = 0;
   for (std::size_t k = 0; k < readings.count(); ++k) {
-    const std::optional<double> distance = observations->length_of_deviation(k);
-    if (!distance || !(*distance <= kExplainedExtent * fit.extent_mm)) continue;
+    const double distance = distances[k];
+    if (!(distance >= 0 && distance <= kExplainedExtent * fit.extent_mm)) continue;
     result.explained[k] = 1;
-    squares += *distance * *distance;
+    squares += distance * distance;
     ++count;
   }
   if (count == 0) return result;

@@ -115,11 +115,12 @@ std::vector<ResidualComponent> residual_components(const Observations& observati
     components[row].name = of_reading[row].name;
     components[row].unit = micro_unit(of_reading[row].is_angle);
   }
-  for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-    const std::vector<double> deviation = observations.deviation(k);
-    for (std::size_t row = 0; row < rows; ++row) {
+  const std::vector<double> deviations = deviations_by_reading(observations);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double micro = micro_per_unit(of_reading[row].is_angle);
+    for (std::size_t k = 0; k < observations.reading_count(); ++k) {
       components[row].normalised.push_back(residuals[rows * k + row]);
-      components[row].residual.push_back(deviation[row] * micro_per_unit(of_reading[row].is_angle));
+      components[row].residual.push_back(deviations[rows * k + row] * micro);
     }
   }
   return components;

@@ -4,11 +4,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "abbe/report/evaluations/statistics_json.h"
 #include "abbe/study/report/summary.h"
-#include "abbe/study/study_steps.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 namespace {
@@ -17,30 +16,16 @@ double root_of_ratio(double square, double freedom) { return freedom > 0 ? std::
 
 }  // namespace
 
-ResidualFigures residual_figures(const Study& study, const StudyResult& result) {
-  ResidualFigures figures;
+NoiseFigures noise_figures(const Study& study, const StudyResult& result) {
+  NoiseFigures figures;
   const Identification& identified = result.identification;
-  std::set<std::pair<std::size_t, std::size_t>> outliers;
   double outlier_square = 0, outlier_residuals = 0;
   for (const Outlier& outlier : identified.outliers) {
-    outliers.insert({outlier.observations, outlier.reading});
     outlier_square += outlier.norm * outlier.norm;
     outlier_residuals += result.model.problem.observations[outlier.observations].observations->rows();
   }
-  figures.outliers = outliers.size();
+  figures.outliers = identified.outliers.size();
   figures.residuals = used_residual_count(result.model.problem);
-  std::vector<double> all, good;
-  for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
-    const Observations& observations = *result.model.problem.observations[s].observations;
-    const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
-    for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-      if (!use.empty() && use[k] == 0) continue;
-      append_length(observations, k, all);
-      if (outliers.count({s, k}) == 0) append_length(observations, k, good);
-    }
-  }
-  figures.length = sample_statistics(all);
-  figures.length_without_outliers = sample_statistics(good);
   // With a robust loss the chi-square of the fit is that without the outliers.
   const FitStatistics& fit = identified.statistics;
   const bool robust = study.identification->loss != LossKind::none;
@@ -50,6 +35,27 @@ ResidualFigures residual_figures(const Study& study, const StudyResult& result) 
   const double stated = root_of_ratio(fit.chi_square, fit.degrees_of_freedom);
   figures.times_noise = robust ? other : stated;
   figures.times_noise_without_outliers = robust ? stated : other;
+  return figures;
+}
+
+ResidualFigures residual_figures(const Study& study, const StudyResult& result) {
+  ResidualFigures figures{noise_figures(study, result), {}, {}};
+  std::vector<std::vector<std::uint8_t>> is_outlier;  // [observations][readings]
+  for (const SelectedObservations& selected : result.model.problem.observations)
+    is_outlier.emplace_back(selected.observations->reading_count());
+  for (const Outlier& outlier : result.identification.outliers) is_outlier[outlier.observations][outlier.reading] = 1;
+  std::vector<double> all, good;
+  for (std::size_t s = 0; s < is_outlier.size(); ++s) {
+    const SelectedObservations& selected = result.model.problem.observations[s];
+    const std::vector<double> lengths = lengths_by_reading(*selected.observations, study.threads);
+    for (std::size_t k = 0; k < lengths.size(); ++k) {
+      if (lengths[k] < 0 || (!selected.use.empty() && selected.use[k] == 0)) continue;
+      all.push_back(lengths[k]);
+      if (is_outlier[s][k] == 0) good.push_back(lengths[k]);
+    }
+  }
+  figures.length = sample_statistics(all);
+  figures.length_without_outliers = good.size() == all.size() ? figures.length : sample_statistics(good);
   return figures;
 }
 

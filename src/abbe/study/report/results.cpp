@@ -1,23 +1,18 @@
 #include "abbe/study/report/results.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/machine/map_file.h"
-#include "abbe/formats/text/csv_reader.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/report.h"
 #include "abbe/study/customer/customer_study.h"
 #include "abbe/study/identification/trust.h"
 #include "abbe/study/report/report_data.h"
-#include "abbe/study/report/report_residuals.h"
 #include "abbe/study/report/summary.h"
 
 namespace abbe {
@@ -70,39 +65,6 @@ MapData map_data(const Machine& machine, const PoseList& poses, const std::vecto
     }
   }
   return data;
-}
-
-std::string residuals_csv(const Study& study, const StudyResult& result) {
-  const Machine& machine = study.machine;
-  std::string text = "setup,reading,point";
-  for (const Axis& axis : machine.axes) text += fmt::format(",{}_{}", axis.name, position_suffix(axis));
-  text += ",used,weight,component,normalised,residual,unit\n";
-  for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
-    const Observations& observations = *result.model.problem.observations[s].observations;
-    const std::vector<ResidualComponent> components = residual_components(observations);
-    const std::vector<std::string>& points = result.campaign.setups[s].readings.point_name;
-    const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
-    std::map<std::size_t, double> weights;
-    for (const Outlier& outlier : result.identification.outliers) {
-      if (outlier.observations == s) weights[outlier.reading] = outlier.weight;
-    }
-    for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-      std::string start = fmt::format("{},{},", csv_field(result.campaign.setups[s].name), k);
-      if (!points.empty() && !points[k].empty()) start += csv_field(points[k]);
-      const std::vector<double> positions = observations.positions(k);
-      for (std::size_t i = 0; i < positions.size(); ++i) {
-        start += fmt::format(",{:.9g}", positions[i] * (1 / position_unit(machine.axes[i])));
-      }
-      const auto outlier = weights.find(k);
-      start += fmt::format(",{},{:.4g}", use.empty() || use[k] != 0 ? 1 : 0,
-                           outlier == weights.end() ? 1.0 : outlier->second);
-      for (const ResidualComponent& component : components) {
-        text += fmt::format("{},{},{:.5g},{:.5g},{}\n", start, component.name, component.normalised[k],
-                            component.residual[k], component.unit);
-      }
-    }
-  }
-  return text;
 }
 
 std::string write_results(const Study& study, const StudyResult& result, const std::string& customer_pdf) {

@@ -96,7 +96,7 @@ std::string study_verdict(const Study& study, const StudyResult& result) {
     text += "Identified; no pose has a volumetric error.";
   }
   if (!result.campaign.truth) {
-    const ResidualFigures residual = residual_figures(study, result);
+    const NoiseFigures residual = noise_figures(study, result);
     text += fmt::format(" Residual of the readings: {:.3g} times their stated uncertainties",
                         residual.times_noise_without_outliers);
     if (residual.outliers > 0) {

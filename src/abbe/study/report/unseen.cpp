@@ -52,6 +52,13 @@ void add_coverage(const StudyResult& result, std::size_t s, Observations& observ
   tally.unseen.readings->add(reading_coverage(observations, identified, s, result.weighed->components.variance));
 }
 
+/// Lengths of measured - modelled, mm, of the readings that have one.
+std::vector<double> known_lengths(const Observations& observations) {
+  std::vector<double> lengths = lengths_by_reading(observations);
+  std::erase(lengths, -1.0);
+  return lengths;
+}
+
 /// Distances of the nominal machine from readings, the numbers of the set-up fitted to these readings.
 std::vector<double> refitted_nominal_errors(const Machine& machine, const Instrument& device,
                                             const InstrumentReadings& readings) {
@@ -59,11 +66,7 @@ std::vector<double> refitted_nominal_errors(const Machine& machine, const Instru
   standing.drift = nullptr;
   const std::unique_ptr<Observations> observations =
       device.started(machine, standing).instrument->observations(machine, ErrorSet{}, standing);
-  std::vector<double> errors;
-  for (std::size_t k = 0; k < readings.count(); ++k) {
-    if (const auto length = observations->length_of_deviation(k)) errors.push_back(*length);
-  }
-  return errors;
+  return known_lengths(*observations);
 }
 
 /// Distances of the nominal machine from readings, the set-up's unknowns fitted to all readings that were used.
@@ -76,9 +79,7 @@ std::vector<double> nominal_errors(const Study& study, const StudyResult& result
   if (!all.unknowns().empty()) identify(problem, identify_options(study));
   const std::unique_ptr<Observations> apart = setup.start->observations(study.machine, ErrorSet{}, readings);
   apart->set_parameters(ErrorSet{}.parameters(), all.unknown_values());
-  std::vector<double> lengths;
-  for (std::size_t k = 0; k < apart->reading_count(); ++k) append_length(*apart, k, lengths);
-  return lengths;
+  return known_lengths(*apart);
 }
 
 /// @param readings  that took no part in the fit

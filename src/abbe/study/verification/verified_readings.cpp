@@ -38,11 +38,9 @@ class FittedSetups {
   /// Lengths of measured - modelled of one set-up, [readings], mm; negative: not used, or only angles are read.
   std::vector<double> lengths(std::size_t setup) const {
     const SelectedObservations& selected = problem_.observations[setup];
-    std::vector<double> result;
-    for (std::size_t k = 0; k < selected.observations->reading_count(); ++k) {
-      const bool used = selected.use.empty() || selected.use[k] != 0;
-      result.push_back(used ? selected.observations->length_of_deviation(k).value_or(-1) : -1);
-    }
+    std::vector<double> result = lengths_by_reading(*selected.observations);
+    for (std::size_t k = 0; k < selected.use.size(); ++k)
+      if (selected.use[k] == 0) result[k] = -1;
     return result;
   }
 
