@@ -5,8 +5,8 @@
 namespace abbe {
 namespace {
 
-// Few readings: more pieces cost more memory and reduction than they gain in balance. Many readings: so many processes
-// can share them, and the sums of all pieces still fit into one message of an MPI.
+// Of few readings, more pieces cost more memory and reduction than they gain in balance. Of many readings, more
+// processes can share more pieces; the sums of all of them have to fit into one message of MPI.
 constexpr std::size_t kFewPieces = 48, kMostPieces = 256;
 // Blocks of a piece before there are more than few.
 constexpr std::size_t kLongPiece = 512;

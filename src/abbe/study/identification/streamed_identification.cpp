@@ -18,27 +18,34 @@
 namespace abbe {
 namespace {
 
+/// @param count  of the readings of the set-up, more than may be in memory
 /// @throws InputError where the study asks for something that needs all readings in memory
-void require_streamable(const Study& study, const Setup& setup) {
+void require_streamable(const Study& study, const Setup& setup, std::size_t count) {
   const IdentificationPlan& plan = *study.identification;
-  const auto refuse_if = [](bool asked, const char* field, const char* what, const char* expected) {
+  const auto refuse_if = [&](bool asked, const std::string& key, const char* what, const char* expected) {
     if (!asked) return;
-    throw InputError({.field = field},
-                     fmt::format("{} needs all readings in memory, and they are more than `readings_in_memory`", what),
-                     expected);
+    throw InputError(
+        {.file = study.name, .field = key},
+        fmt::format("{} needs all readings in memory, and set-up {} has {}, more than readings_in_memory = "
+                    "{}",
+                    what, setup.name, count, plan.readings_in_memory),
+        expected);
   };
   refuse_if(plan.held_out_fraction > 0 && !plan.held_out_file, "identify.held_out_fraction", "holding out readings",
             "held_out_fraction = 0, or held_out_file with readings of their own");
   refuse_if(plan.loss != LossKind::none, "identify.loss", "a robust loss", "loss = \"none\"");
   refuse_if(plan.strategy != Strategy::joint, "identify.strategy", "a strategy in stages", "strategy = \"joint\"");
-  refuse_if(plan.estimate_variance_factor || plan.estimate_pose_noise || plan.estimate_block_noise,
-            "identify.estimate_variances", "estimating variances", "stated uncertainties");
+  refuse_if(plan.estimate_variance_factor, "identify.variance_factor", "estimating it", "variance_factor = \"stated\"");
+  refuse_if(plan.estimate_pose_noise, "identify.pose_noise", "estimating it", "pose_noise = \"none\"");
+  refuse_if(plan.estimate_block_noise, "identify.block_noise", "estimating it", "block_noise = \"none\"");
   refuse_if(plan.select_order, "identify.motion.orders", "a choice of orders", "`order` instead of `orders`");
-  refuse_if(plan.select_terms || plan.rank_sensors, "identify.motion.optional", "a choice of terms or sensors",
-            "terms that are all identified");
+  refuse_if(plan.select_terms, "identify.motion.optional", "a choice of terms", "terms that are all identified");
+  refuse_if(plan.rank_sensors, "identify.rank_sensors", "ranking sensors", "rank_sensors = false");
   refuse_if(plan.monte_carlo > 0, "identify.monte_carlo", "Monte Carlo", "monte_carlo = 0");
   refuse_if(setup.drift.has_value(), "setup.drift", "a drift of the set-up", "set-ups that stand still");
-  refuse_if(!study.channels.files.empty() || !setup.channels.files.empty(), "channel", "recorded channels",
+  refuse_if(!study.channels.files.empty(), "channels", "reading recorded channels",
+            "columns of the states in the files of readings");
+  refuse_if(!setup.channels.files.empty(), "setup.channels", "reading recorded channels",
             "columns of the states in the files of readings");
 }
 
@@ -103,7 +110,7 @@ std::shared_ptr<const ReadingShards> shards_too_large(const Study& study, const 
   for (const SetupData& data : setup.data) source.files.push_back({data.file, data.mapping});
   auto shards = std::make_shared<const ReadingShards>(std::move(source));
   if (shards->count() <= study.identification->readings_in_memory) return nullptr;
-  require_streamable(study, setup);
+  require_streamable(study, setup, shards->count());
   return shards;
 }
 

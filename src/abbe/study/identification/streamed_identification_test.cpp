@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -219,12 +220,37 @@ TEST_F(StreamedReadings, TakeNoSumsOfAnotherModelOrOfOtherReadings) {
   expect_fresh();
 }
 
-TEST_F(StreamedReadings, AreRefusedWhereAllAreNeededInMemory) {
-  study_.identification->held_out_fraction = 0.1;
-  EXPECT_THAT(refusal(), HasSubstr("identify.held_out_fraction: holding out readings needs all readings in memory"));
-  study_.identification->held_out_fraction = 0;
-  study_.identification->monte_carlo = 100;
-  EXPECT_THAT(refusal(), HasSubstr("identify.monte_carlo"));
+TEST_F(StreamedReadings, AreRefusedByTheKeyThatNeedsAllInMemory) {
+  std::ifstream file(test::example_file("trunnion/ball-bar.study.toml"));
+  const std::string example(std::istreambuf_iterator<char>(file), {});
+  const std::vector<SetupData> data = study_.setups[0].data;
+  const auto with = [&](const std::string& line) {
+    std::string text = example;
+    const auto put = [&](const std::string& old, const std::string& own) {
+      ASSERT_NE(text.find(old), std::string::npos) << old;
+      text.replace(text.find(old), old.size(), own);
+    };
+    put("\"../machines/trunnion-mill.machine.toml\"",
+        "\"" + test::example_file("machines/trunnion-mill.machine.toml") + "\"");
+    put("held_out_fraction = 0.1", line);
+    write("key.study.toml", text);
+    study_ = read_study(folder_ / "key.study.toml");
+    study_.simulation.reset();
+    study_.setups[0].data = data;
+    if (line.find("held_out_fraction") != 0) study_.identification->held_out_fraction = 0;
+  };
+  // Only what the reader of studies knows can be left out again.
+  for (const char* const text :
+       {"held_out_fraction = 0.2", "loss = \"huber\"", "strategy = \"independent\"", "variance_factor = \"estimated\"",
+        "pose_noise = \"estimated\"", "block_noise = \"estimated\"\nnoise_block_min = 5", "monte_carlo = 100"}) {
+    const std::string line = text;
+    with(line);
+    const std::string key = "identify." + line.substr(0, line.find(' '));
+    EXPECT_THAT(refusal(), testing::StartsWith("trunnion mill, ball bar: " + key + ": ")) << line;
+    EXPECT_THAT(refusal(), HasSubstr("needs all readings in memory, and set-up bar has "));
+  }
+  with("");
+  EXPECT_EQ(refusal(), "");
 }
 
 }  // namespace
