@@ -25,9 +25,9 @@ void append(std::vector<std::byte>& all, std::span<const std::byte> following) {
 
 Summation MpiGroup::summation() {
   if (size_ == 1) return {};
-  return Summation([this](const SumRequest& request, const Summation::Here& here, const std::stop_token& stop) {
+  return [this](const SumRequest& request, const Summation::Here& here, const std::stop_token& stop) {
     return sum(request, here, stop);
-  });
+  };
 }
 
 SumOfReadings MpiGroup::sum(const SumRequest& request, const Summation::Here& here, const std::stop_token& stop) {

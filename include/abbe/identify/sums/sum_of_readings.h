@@ -141,8 +141,7 @@ class Summation {
         }),
         fingerprints_(std::move(fingerprints)) {}
   template <class Callable>
-  requires std::is_constructible_v<SharedSum, Callable>
-  explicit Summation(Callable sum) : sum_(std::move(sum)) {}
+  requires std::is_constructible_v<SharedSum, Callable> Summation(Callable sum) : sum_(std::move(sum)) {}
 
   explicit operator bool() const { return static_cast<bool>(sum_); }
   SumOfReadings operator()(const SumRequest& request, const Here& here, const std::stop_token& stop) const {

@@ -1,3 +1,4 @@
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,13 +42,14 @@ class ResidualRows {
     for (std::size_t k = first; k < last; ++k) {
       start.clear();
       auto out = std::back_inserter(start);
-      fmt::format_to(out, "{},{},", name_, k);
+      fmt::format_to(out, FMT_COMPILE("{},{},"), name_, k);
       if (!points_.empty() && !points_[k].empty()) start += csv_field(points_[k]);
       const std::vector<double> positions = observations_.positions(k);
-      for (std::size_t i = 0; i < positions.size(); ++i) fmt::format_to(out, ",{:.9g}", positions[i] * per_unit_[i]);
-      fmt::format_to(out, ",{},{:.4g}", use_.empty() || use_[k] != 0 ? 1 : 0, weights_[k]);
+      for (std::size_t i = 0; i < positions.size(); ++i)
+        fmt::format_to(out, FMT_COMPILE(",{:.9g}"), positions[i] * per_unit_[i]);
+      fmt::format_to(out, FMT_COMPILE(",{},{:.4g}"), use_.empty() || use_[k] != 0 ? 1 : 0, weights_[k]);
       for (const ResidualComponent& component : components_) {
-        fmt::format_to(std::back_inserter(text), "{},{},{:.5g},{:.5g},{}\n", start, component.name,
+        fmt::format_to(std::back_inserter(text), FMT_COMPILE("{},{},{:.5g},{:.5g},{}\n"), start, component.name,
                        component.normalised[k], component.residual[k], component.unit);
       }
     }
