@@ -31,7 +31,8 @@ void refuse_existing_output(const std::filesystem::path& name);
 /// For writers: an output is in its place, whole. Nothing happens outside the life of a KeptOutputs.
 void note_complete_output(const std::filesystem::path& name);
 
-/// Outputs that were noted, as they were called, in their order: what stands where something fails later.
+/// Outputs that were noted since the last KeptOutputs began, as they were called, in their order: what stands where
+/// something fails later, or where the process is interrupted while it ends.
 std::vector<std::string> complete_outputs();
 
 /// For commands before they begin to compute: refuse_existing_output(), and what else is wrong with the name of a file

@@ -17,20 +17,23 @@ struct OutputRule {
   std::vector<std::string> complete;
 };
 
+/// Never destroyed: whoever is interrupted while the process ends still says what was complete.
 OutputRule& output_rule() {
-  static OutputRule one;
-  return one;
+  static auto* const one = new OutputRule;
+  return *one;
 }
 
 }  // namespace
 
-KeptOutputs::KeptOutputs() { output_rule().kept = true; }
+KeptOutputs::KeptOutputs() {
+  const std::lock_guard<std::mutex> locked(output_rule().list);
+  output_rule().complete.clear();
+  output_rule().kept = true;
+}
 
 KeptOutputs::~KeptOutputs() {
   output_rule().kept = false;
   output_rule().replaced = false;
-  const std::lock_guard<std::mutex> locked(output_rule().list);
-  output_rule().complete.clear();
 }
 
 void replace_existing_outputs() { output_rule().replaced = true; }

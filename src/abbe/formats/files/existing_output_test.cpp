@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "abbe/formats/files/empty_folder_for_test.h"
 #include "abbe/formats/files/results_folder.h"
@@ -51,6 +53,21 @@ TEST(ExistingOutput, OfSomebodyElseMeanwhileStays) {
   }
   EXPECT_EQ(read_text_file(file), "of somebody");
   EXPECT_EQ(entries_of(folder), 1U) << "something is left behind";
+}
+
+TEST(ExistingOutput, ThatIsCompleteIsKnownUntilAnotherCommandBegins) {
+  const fs::path folder = test::empty_folder("existing_output_complete"), file = folder / "map.csv";
+  {
+    const KeptOutputs kept;
+    EXPECT_TRUE(complete_outputs().empty());
+    write_file_atomically(file, "new");
+  }
+  // The process may be interrupted while it ends.
+  EXPECT_EQ(complete_outputs(), std::vector<std::string>{file.string()});
+  write_file_atomically(file, "newer");
+  EXPECT_EQ(complete_outputs().size(), 1U);
+  const KeptOutputs other;
+  EXPECT_TRUE(complete_outputs().empty());
 }
 
 }  // namespace
