@@ -31,8 +31,8 @@ void refuse_existing_output(const std::filesystem::path& name);
 /// For writers: an output is in its place, whole. Nothing happens outside the life of a KeptOutputs.
 void note_complete_output(const std::filesystem::path& name);
 
-/// Outputs that were noted since the last KeptOutputs began, as they were called, in their order: what stands where
-/// something fails later, or where the process is interrupted while it ends.
+/// Outputs that were noted since the last KeptOutputs began, by the names they were given, in their order: what to tell
+/// the user if something fails later, or if the process is interrupted while it ends.
 std::vector<std::string> complete_outputs();
 
 /// For commands before they begin to compute: refuse_existing_output(), and what else is wrong with the name of a file

@@ -24,8 +24,8 @@ struct PieceRange {
 
 /// Number of readings of a piece that is not the last of its observations.
 ///
-/// It is a multiple of Observations::kBlockSize, the least with which the blocks make no more than 48 pieces; for more
-/// than 3.1 million readings no more than one piece per 65,536 readings, at most 256. From 32,768 readings on it is
+/// It is the least multiple of Observations::kBlockSize with which the blocks make at most 48 pieces. More than 3.1
+/// million readings make about one piece per 65,536 readings, at most 256. Pieces of 32,768 readings and more are
 /// rounded up to a multiple of 4096.
 /// @param blocks  of all observations
 std::size_t readings_of_piece(std::size_t blocks);

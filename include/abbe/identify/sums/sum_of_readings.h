@@ -33,7 +33,7 @@ struct SumOfReadings {
   std::vector<std::vector<double>> values;  ///< [range.count()]: see SumKind; {0} or nothing: no reading is used
 };
 
-/// What this process answers a request with, still without pieces: range, readings and values are empty.
+/// The sum that answers a request, still of no piece: range, readings and values are empty.
 SumOfReadings begin_sum(const SumRequest& request);
 
 /// Both ranges as one; one of them may be empty.

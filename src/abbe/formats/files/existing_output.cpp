@@ -17,7 +17,7 @@ struct OutputRule {
   std::vector<std::string> complete;
 };
 
-/// Never destroyed: whoever is interrupted while the process ends still says what was complete.
+/// Never destroyed: a signal may come while the process ends, and its handler tells which outputs are complete.
 OutputRule& output_rule() {
   static auto* const one = new OutputRule;
   return *one;

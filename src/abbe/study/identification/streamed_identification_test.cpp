@@ -239,7 +239,7 @@ TEST_F(StreamedReadings, AreRefusedByTheKeyThatNeedsAllInMemory) {
     study_.setups[0].data = data;
     if (line.find("held_out_fraction") != 0) study_.identification->held_out_fraction = 0;
   };
-  // Only what the reader of studies knows can be left out again.
+  // Read from a file, so that every key named is one that a study can have.
   for (const char* const text :
        {"held_out_fraction = 0.2", "loss = \"huber\"", "strategy = \"independent\"", "variance_factor = \"estimated\"",
         "pose_noise = \"estimated\"", "block_noise = \"estimated\"\nnoise_block_min = 5", "monte_carlo = 100"}) {

@@ -55,7 +55,7 @@ TEST(ResidualFigures, AreThoseOfSingleReadings) {
     EXPECT_NEAR(figures.length_without_outliers.p95, sample_statistics(good).p95, 1e-12);
     EXPECT_EQ(noise_figures(study, result).times_noise, figures.times_noise);
   }
-  // Or else the examples no longer show what is tested.
+  // Otherwise the examples no longer contain both cases.
   EXPECT_GT(outliers, 0);
   EXPECT_GT(without_length, 0);
 }
