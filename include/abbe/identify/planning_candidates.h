@@ -27,6 +27,7 @@ struct PlanningCandidates {
 ///
 /// Build the observations from readings that could be taken; what they would read need not be known, only their
 /// uncertainties (the noise model at the measured point).
-PlanningCandidates candidate_rows(const Problem& problem);
+/// @param threads  as for_each_block()
+PlanningCandidates candidate_rows(const Problem& problem, int threads = 1);
 
 }  // namespace abbe

@@ -1,47 +1,78 @@
 #include "abbe/identify/planning_candidates.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
 
-}  // namespace
+/// Readings of one set of observations, and the first of their rows.
+struct Block {
+  const SelectedObservations* selected = nullptr;
+  std::size_t first = 0, count = 0;
+  std::size_t row = 0;
+  std::size_t first_unknown = 0;  ///< column of the first unknown of these observations
+};
 
-PlanningCandidates candidate_rows(const Problem& problem) {
-  PlanningCandidates candidates;
-  candidates.rows = PlanningCandidates::Rows::Zero(static_cast<Index>(used_residual_count(problem)),
-                                                   static_cast<Index>(estimated_count(problem)));
-  candidates.first_row = {0};
-  set_observations(problem, present_values(problem));
+bool is_used(const SelectedObservations& selected, std::size_t reading) {
+  return selected.use.empty() || selected.use[reading] != 0;
+}
+
+/// Blocks of all readings; says where the rows of each candidate begin.
+std::vector<Block> blocks_of(const Problem& problem, std::vector<std::size_t>& first_row) {
+  std::vector<Block> blocks;
   std::size_t first_unknown = problem.machine_parameters.size();
-  std::vector<double> residuals, jacobian;
   for (const SelectedObservations& selected : problem.observations) {
     const Observations& observations = *selected.observations;
-    const std::size_t rows = static_cast<std::size_t>(observations.rows());
-    const std::size_t machine = problem.machine_parameters.size(), columns = machine + selected.unknowns.size();
-    const std::size_t stride = rows * Observations::kBlockSize;
-    residuals.resize(stride);
-    jacobian.resize(stride * columns);
-    for (std::size_t first = 0; first < observations.reading_count(); first += Observations::kBlockSize) {
-      const std::size_t count = std::min(Observations::kBlockSize, observations.reading_count() - first);
-      observations.evaluate(first, count, problem.machine_parameters, selected.unknowns, residuals.data(),
-                            jacobian.data(), stride);
-      for (std::size_t k = 0; k < count; ++k) {
-        if (!selected.use.empty() && selected.use[first + k] == 0) continue;
-        for (std::size_t row = 0; row < rows; ++row) {
-          const Index target = static_cast<Index>(candidates.first_row.back() + row);
-          for (std::size_t c = 0; c < columns; ++c)
-            candidates.rows(target, static_cast<Index>(c < machine ? c : first_unknown + c - machine)) =
-                jacobian[c * stride + row * count + k];
-        }
-        candidates.first_row.push_back(candidates.first_row.back() + rows);
-      }
+    const std::size_t all = observations.reading_count(), rows = static_cast<std::size_t>(observations.rows());
+    for (std::size_t first = 0; first < all; first += Observations::kBlockSize) {
+      const std::size_t count = std::min(Observations::kBlockSize, all - first);
+      blocks.push_back({&selected, first, count, first_row.back(), first_unknown});
+      for (std::size_t k = first; k < first + count; ++k)
+        if (is_used(selected, k)) first_row.push_back(first_row.back() + rows);
     }
     first_unknown += selected.unknowns.size();
   }
+  return blocks;
+}
+
+void compute(const Problem& problem, const Block& block, PlanningCandidates::Rows& all) {
+  if (all.cols() == 0) return;
+  const SelectedObservations& selected = *block.selected;
+  const Observations& observations = *selected.observations;
+  const std::size_t rows = static_cast<std::size_t>(observations.rows()), count = block.count;
+  const std::size_t machine = problem.machine_parameters.size(), columns = machine + selected.unknowns.size();
+  const std::size_t stride = rows * Observations::kBlockSize;
+  thread_local std::vector<double> residuals, jacobian;
+  residuals.resize(stride);
+  jacobian.resize(stride * columns);
+  observations.evaluate(block.first, count, problem.machine_parameters, selected.unknowns, residuals.data(),
+                        jacobian.data(), stride);
+  auto target = static_cast<Index>(block.row);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!is_used(selected, block.first + k)) continue;
+    for (std::size_t row = 0; row < rows; ++row, ++target) {
+      double* const to = &all(target, 0);
+      std::fill_n(to, all.cols(), 0.0);
+      const double* const from = &jacobian[row * count + k];
+      for (std::size_t c = 0; c < machine; ++c) to[c] = from[c * stride];
+      for (std::size_t c = machine; c < columns; ++c) to[block.first_unknown + c - machine] = from[c * stride];
+    }
+  }
+}
+
+}  // namespace
+
+PlanningCandidates candidate_rows(const Problem& problem, int threads) {
+  PlanningCandidates candidates;
+  candidates.first_row = {0};
+  const std::vector<Block> blocks = blocks_of(problem, candidates.first_row);
+  candidates.rows.resize(static_cast<Index>(candidates.first_row.back()), static_cast<Index>(estimated_count(problem)));
+  set_observations(problem, present_values(problem));
+  for_each_block(blocks.size(), threads, [&](std::size_t block) { compute(problem, blocks[block], candidates.rows); });
   return candidates;
 }
 

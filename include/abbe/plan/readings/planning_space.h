@@ -23,10 +23,11 @@ class PlanningSpace {
   /// @param threshold  singular values of the scaled rows below this part of the largest are not seen
   /// @throws std::invalid_argument for sizes that do not agree, costs not above zero, or numbers that are not finite
   PlanningSpace(const PlanningCandidates& candidates, const Eigen::MatrixXd& known, double threshold = 1e-11)
-      : PlanningSpace(candidates, known, WorkInStep(), threshold) {}
+      : PlanningSpace(candidates, known, WorkInStep(), 1, threshold) {}
   /// @param in_step  processes that make the same space, which then share the work
+  /// @param threads  of this process, as for_each_block()
   PlanningSpace(const PlanningCandidates& candidates, const Eigen::MatrixXd& known, const WorkInStep& in_step,
-                double threshold = 1e-11);
+                int threads, double threshold = 1e-11);
 
   std::size_t count() const { return first_row_.size() - 1; }
   std::size_t parameter_count() const { return static_cast<std::size_t>(estimates_from_seen_.rows()); }

@@ -73,6 +73,8 @@ class PlanningModel {
   Candidates readings_at(const PoseList& poses, const std::vector<std::size_t>& sight = {}) const;
   /// The same at several conditions.
   Candidates readings_at(const std::vector<PosesAt>& tried, const std::vector<std::size_t>& sight = {}) const;
+  /// The same without rows.
+  Candidates seen_at(const std::vector<PosesAt>& tried, const std::vector<std::size_t>& sight = {}) const;
   /// Rows of readings that were candidates, at states of their own, in the order of the set-ups.
   ///
   /// With times, the drift of the set-ups at these times is unknown too, as an identification has it. Its columns are

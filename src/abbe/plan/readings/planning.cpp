@@ -54,7 +54,7 @@ class PlanSearch {
   bool grow(std::size_t count) {
     while (design_.chosen().size() < count) {
       close_groups(rules_);
-      const PlanDesign::Best best = design_.best_to_add(rules_);
+      const ScoredCandidate best = design_.best_to_add(rules_);
       if (best.candidate == static_cast<std::size_t>(-1)) return false;
       design_.add(best.candidate);
       if (!refresh()) return false;
@@ -83,7 +83,7 @@ class PlanSearch {
     constexpr std::size_t kNumbers = 5;
     std::vector<double> found(plans.size() * kNumbers);
     std::vector<PlanShares::Piece> pieces;
-    const PlanShares& shares = design_.shares();
+    const PlanShares shares = design_.shares().of(plans.size());
     for (std::size_t k = 0; k < plans.size(); ++k) {
       const std::span<double> numbers(&found[k * kNumbers], kNumbers);
       pieces.push_back({shares.owner(k), numbers});
@@ -136,7 +136,7 @@ class PlanSearch {
     while (design_.chosen().size() < count_limit()) {
       rules.most_cost = time_left();
       close_groups(rules);
-      const PlanDesign::Best best = design_.best_to_add(rules);
+      const ScoredCandidate best = design_.best_to_add(rules);
       if (best.candidate == static_cast<std::size_t>(-1)) break;
       design_.add(best.candidate);
       if (!refresh()) return false;
@@ -207,12 +207,20 @@ class PlanSearch {
       const std::size_t exchanges_before = plan.exchanges;
       const double objective_before = design_.objective();
       order_by_loss(order);
-      std::size_t ahead = 1;
+      std::size_t ahead = 1, known_from = 0;
+      std::vector<ScoredCandidate> known;  // for the places of the order from there on
       for (std::size_t k = 0; k < order.size(); ++k) {
-        if (ahead > 1 && !design_.looked_ahead(order[k]))
-          design_.look_ahead(std::span(order).subspan(k, std::min(ahead, order.size() - k)));
-        // The more places in a row bring nothing, the less is lost by looking ahead.
-        ahead = exchange_one(order[k], plan) ? 1 : std::min(2 * ahead, PlanDesign::kMostAhead);
+        if (k >= known_from + known.size()) {
+          known_from = k;
+          known = best_instead(std::span(order).subspan(k, std::min(ahead, order.size() - k)));
+        }
+        if (exchange_one(order[k], known[k - known_from], plan)) {
+          ahead = 1;
+          known.clear();
+        } else {
+          // The more places in a row bring nothing, the less is lost by looking at several together.
+          ahead = std::min(2 * ahead, PlanDesign::kMostPlaces);
+        }
         if (options_.progress)
           options_.progress((start_ + (pass + static_cast<double>(k + 1) / static_cast<double>(order.size())) /
                                           options_.most_passes) /
@@ -254,13 +262,18 @@ class PlanSearch {
     }
   }
 
-  bool exchange_one(std::size_t place, ReadingPlan& plan) {
-    PlanDesign::Allowed rules = rules_;
-    rules.per_cost = false;
-    rules.most_cost = time_left() + space_.cost(design_.chosen()[place]);
-    rules.ceiling = change_of(options_.smallest_gain);
-    close_groups(rules, place);
-    const PlanDesign::Best best = design_.best_instead(place, rules);
+  std::vector<ScoredCandidate> best_instead(std::span<const std::size_t> places) {
+    std::vector<PlanDesign::Allowed> rules(places.size(), rules_);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      rules[k].per_cost = false;
+      rules[k].most_cost = time_left() + space_.cost(design_.chosen()[places[k]]);
+      rules[k].ceiling = change_of(options_.smallest_gain);
+      close_groups(rules[k], places[k]);
+    }
+    return design_.best_instead(places, rules);
+  }
+
+  bool exchange_one(std::size_t place, const ScoredCandidate& best, ReadingPlan& plan) {
     if (!(best.change < change_of(options_.smallest_gain)) || !design_.exchange(place, best.candidate)) return false;
     ++plan.exchanges;
     plan.history.push_back(design_.objective());

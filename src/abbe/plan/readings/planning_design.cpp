@@ -13,6 +13,7 @@ namespace {
 
 using Index = Eigen::Index;
 using planning::factorise;
+using planning::kSmallestPivot;
 using planning::log_determinant;
 using planning::Small;
 using planning::trace_of_quotient;
@@ -27,7 +28,11 @@ constexpr double kWorthDividing = 2e5;
 
 PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functionals, int threads,
                        const WorkInStep& in_step, std::uint64_t fingerprint)
-    : space_(space), threads_(threads), by_variance_(functionals.rows() > 0), v_(space.dimension()) {
+    : space_(space),
+      threads_(threads),
+      by_variance_(functionals.rows() > 0),
+      v_(space.dimension()),
+      leaving_(kMostPlaces) {
   const std::size_t n = space.count();
   if (by_variance_) weight_ = functionals.transpose() * functionals;
   times_.assign(n, 0);
@@ -46,21 +51,21 @@ PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functi
   gain_.assign(n, 0);
   size_.assign(n, 0);
   const std::size_t columns = padded(2 * most * (by_variance_ ? 2 : 1), kColumnMultiple);
-  const std::size_t scored = padded(most, kColumnMultiple) + columns;  // of best_in_block()
   factors_.assign(columns * space.stride(), 0);
   scratch_.resize(static_cast<Index>(v_), static_cast<Index>(most));
-  ahead_factors_.assign(padded(kMostAhead * most, kColumnMultiple) * space.stride(), 0);
+  const std::size_t together = padded(kMostPlaces * most, kColumnMultiple) + kColumnMultiple;
+  solved_.assign(together * space.stride(), 0);
+  if (by_variance_) solved_behind_.assign(solved_.size(), 0);
   pending_.reserve(2);
   x_stride_ = padded(kBlockRows + most, kColumnMultiple);
-  x_.resize(block_count());
-  ahead_x_.resize(block_count());
-  best_.resize(block_count());
+  scratch_size_ = (std::max(columns, together) + padded(most, kColumnMultiple)) * x_stride_;
+  best_.resize(block_count() * kMostPlaces);
   if (static_cast<double>(space.first_row(n)) * static_cast<double>(v_) < kWorthDividing) {
     threads_ = 1;
+    shares_ = shares_.of(block_count());
   } else {
-    shares_ = PlanShares(in_step, fingerprint);
+    shares_ = PlanShares(in_step, fingerprint, block_count());
   }
-  for (std::size_t k = 0; k < shares_.own_count(block_count()); ++k) x_[shares_.own(k)].resize(scored * x_stride_);
 }
 
 bool PlanDesign::rebuild(const std::vector<std::size_t>& chosen, double ridge) {
@@ -79,7 +84,6 @@ bool PlanDesign::rebuild(const std::vector<std::size_t>& chosen, double ridge) {
   }
   const Cholesky factor(information);
   updates_ = 0;
-  ahead_.clear();
   if (factor.info() != Eigen::Success) return false;
   const Eigen::VectorXd diagonal = factor.diagonal();
   if (v_ > 0 && !(diagonal.minCoeff() > std::max(1e-7, space_.determined()) * diagonal.maxCoeff())) return false;
@@ -91,20 +95,35 @@ bool PlanDesign::rebuild(const std::vector<std::size_t>& chosen, double ridge) {
 }
 
 void PlanDesign::refresh_all() {
-  for_own_blocks([this](std::size_t block) {
+  const std::size_t stride = space_.stride();
+  const auto columns_of = [&](const Eigen::MatrixXd& matrix) {
+    std::vector<double> columns(stride * stride);
+    for (Index j = 0; j < matrix.cols(); ++j)
+      std::copy_n(matrix.col(j).data(), matrix.rows(), &columns[static_cast<std::size_t>(j) * stride]);
+    return columns;
+  };
+  const std::vector<double> inverse = columns_of(inverse_);
+  const std::vector<double> weight = by_variance_ ? columns_of(weight_) : std::vector<double>();
+  for_own_blocks([&](std::size_t block) {
     const std::size_t first = space_.first_row(blocks_[block]);
-    const std::size_t rows = space_.first_row(blocks_[block + 1]) - first;
-    const RowsMap a(space_.row(first), static_cast<Index>(rows), static_cast<Index>(v_),
-                    Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
-    const Eigen::MatrixXd z = a * inverse_;
-    const Eigen::MatrixXd zc = by_variance_ ? Eigen::MatrixXd(z * weight_) : Eigen::MatrixXd();
+    const std::size_t rows = padded(space_.first_row(blocks_[block + 1]) - first, kColumnMultiple);
+    // A M^-1 and A M^-1 C, row by row.
+    thread_local std::vector<double> z, zc;
+    const auto multiply = [&](const double* a, const std::vector<double>& by, std::vector<double>& product) {
+      product.assign(rows * stride, 0.0);
+      add_cross_products(by.data(), stride, stride, a, rows, stride, stride, product.data(), stride);
+    };
+    multiply(space_.row(first), inverse, z);
+    if (by_variance_) multiply(z.data(), weight, zc);
+    const Eigen::OuterStride<> outer(static_cast<Index>(stride));
     for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i) {
-      const Index n = static_cast<Index>(space_.row_count(i)), at = static_cast<Index>(space_.first_row(i) - first);
-      Eigen::Map<Eigen::MatrixXd>(w_.data() + square_[i], n, n).noalias() =
-          z.middleRows(at, n) * a.middleRows(at, n).transpose();
+      const Index n = static_cast<Index>(space_.row_count(i)), v = static_cast<Index>(v_);
+      const std::size_t at = (space_.first_row(i) - first) * stride;
+      const RowsMap a(space_.row(space_.first_row(i)), n, v, outer), zi(z.data() + at, n, v, outer);
+      Eigen::Map<Eigen::MatrixXd>(w_.data() + square_[i], n, n) = zi.lazyProduct(a.transpose());
       if (by_variance_)
-        Eigen::Map<Eigen::MatrixXd>(g_.data() + square_[i], n, n).noalias() =
-            zc.middleRows(at, n) * z.middleRows(at, n).transpose();
+        Eigen::Map<Eigen::MatrixXd>(g_.data() + square_[i], n, n) =
+            RowsMap(zc.data() + at, n, v, outer).lazyProduct(zi.transpose());
       measure(i);
     }
   });
@@ -158,17 +177,21 @@ void PlanDesign::commit(double direction) {
   inverse_.noalias() -= direction * update.sign * t * t.transpose();
   objective_ += direction * update.change;
   ++updates_;
-  ahead_.clear();
 }
 
-double* PlanDesign::products(std::size_t block, std::size_t end) {
-  double* x = x_[block].data();
-  const std::size_t columns = padded(end, kColumnMultiple);
+double* PlanDesign::scratch() const {
+  thread_local std::vector<double> numbers;
+  if (numbers.size() < scratch_size_) numbers.resize(scratch_size_);
+  return numbers.data();
+}
+
+double* PlanDesign::products(std::size_t block, const double* factors, std::size_t columns) const {
+  double* x = scratch();
   const std::size_t first = space_.first_row(blocks_[block]);
   const std::size_t rows = padded(space_.first_row(blocks_[block + 1]) - first, kColumnMultiple);
   std::fill(x, x + columns * x_stride_, 0.0);
-  add_cross_products(space_.row(first), rows, space_.stride(), factors_.data(), columns, space_.stride(),
-                     space_.stride(), x, x_stride_);
+  add_cross_products(space_.row(first), rows, space_.stride(), factors, columns, space_.stride(), space_.stride(), x,
+                     x_stride_);
   return x;
 }
 
@@ -201,7 +224,7 @@ void PlanDesign::change_squares(const Update& update, const double* x, std::size
 
 void PlanDesign::pass() {
   for_own_blocks([this](std::size_t block) {
-    const double* x = products(block, pending_.back().end);
+    const double* x = products(block, factors_.data(), padded(pending_.back().end, kColumnMultiple));
     const std::size_t first = space_.first_row(blocks_[block]);
     for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i) {
       for (const Update& update : pending_)
@@ -253,6 +276,11 @@ bool PlanDesign::exchange(std::size_t place, std::size_t candidate) {
 }
 
 double PlanDesign::change_by_adding(const double* w, const double* g, std::size_t n) const {
+  if (n == 1) {
+    const double sum = 1 + *w;
+    if (!(sum > kSmallestPivot)) return kImpossible;
+    return by_variance_ ? -*g / sum : -std::log(sum);
+  }
   Small lower;
   if (!factorise(w, n, 1, lower)) return kImpossible;
   return by_variance_ ? -trace_of_quotient(lower, g, n) : -log_determinant(lower, n);
@@ -275,18 +303,54 @@ bool PlanDesign::allowed(std::size_t candidate, const Allowed& rules) const {
          space_.cost(candidate) <= rules.most_cost;
 }
 
-void PlanDesign::keep_better(std::size_t candidate, double change, const Allowed& rules, Best& best) const {
-  const double unit = rules.per_cost ? space_.cost(candidate) : 1.0, score = change / unit;
-  if (score < best.score - tie() / unit) best = {candidate, change, score, tie() / unit};
+ScoredCandidate PlanDesign::scored(std::size_t candidate, double change, const Allowed& rules) const {
+  const double unit = rules.per_cost ? space_.cost(candidate) : 1.0;
+  return {candidate, change, change / unit, tie() / unit};
 }
 
-PlanDesign::Best PlanDesign::best_to_add(const Allowed& rules) {
+ScoredCandidate PlanDesign::best_to_add(const Allowed& rules) {
   for_own_blocks([this, &rules](std::size_t block) {
-    best_[block] = {};
+    PossibleBests& best = best_[block * kMostPlaces];
+    best.clear();
     for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i)
-      if (allowed(i, rules)) keep_better(i, gain(i), rules, best_[block]);
+      if (allowed(i, rules)) best.add(scored(i, gain(i), rules));
   });
-  return best_of_blocks();
+  return best_of_blocks(1).front();
+}
+
+void PlanDesign::find_squares(std::size_t candidate, Eigen::Ref<const Eigen::MatrixXd> solved,
+                              Eigen::Ref<const Eigen::MatrixXd> weighted, Squares& squares) const {
+  const Index v = static_cast<Index>(v_), n = static_cast<Index>(space_.row_count(candidate));
+  const RowsMap a(space_.row(space_.first_row(candidate)), n, v,
+                  Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
+  const auto fill = [n](const auto& value, Small& to) {
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j <= i; ++j)
+        to[static_cast<std::size_t>(i * n + j)] = to[static_cast<std::size_t>(j * n + i)] = value(i, j);
+  };
+  fill([&](Index i, Index j) { return a.row(i).dot(solved.col(j)); }, squares.w);
+  if (by_variance_) fill([&](Index i, Index j) { return solved.col(i).dot(weighted.col(j)); }, squares.g);
+}
+
+double PlanDesign::loss_of(const Squares& squares, std::size_t n) const {
+  Small lower;
+  if (!factorise(squares.w.data(), n, -1, lower)) return kImpossible;
+  return by_variance_ ? trace_of_quotient(lower, squares.g.data(), n) : -log_determinant(lower, n);
+}
+
+std::vector<double> PlanDesign::losses() const {
+  std::vector<double> result;
+  Squares squares;
+  Eigen::MatrixXd solved, weighted;
+  for (const std::size_t candidate : chosen_) {
+    const RowsMap a(space_.row(space_.first_row(candidate)), static_cast<Index>(space_.row_count(candidate)),
+                    static_cast<Index>(v_), Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
+    solved.noalias() = inverse_ * a.transpose();
+    if (by_variance_) weighted.noalias() = weight_ * solved;
+    find_squares(candidate, solved, weighted, squares);
+    result.push_back(loss_of(squares, space_.row_count(candidate)));
+  }
+  return result;
 }
 
 }  // namespace abbe

@@ -3,6 +3,7 @@
 // Internal to identify: a choice of readings that can be changed one reading at a time.
 #include <Eigen/Core>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "abbe/geometry/parallel_blocks.h"
+#include "abbe/plan/readings/planning_best.h"
 #include "abbe/plan/readings/planning_shares.h"
 #include "abbe/plan/readings/planning_space.h"
 
@@ -29,7 +31,7 @@ namespace abbe {
 class PlanDesign {
  public:
   static constexpr std::size_t kMostRows = PlanningCandidates::kMostRows;
-  static constexpr double kImpossible = std::numeric_limits<double>::infinity();
+  static constexpr double kImpossible = ScoredCandidate::kImpossible;
 
   /// @param functionals  [m, v]: minimise the sum of their variances; without rows: minimise -log det M
   /// @param in_step      processes that make the same choice
@@ -64,12 +66,6 @@ class PlanDesign {
   /// [chosen] change of the objective by taking each out; kImpossible if the rest would not determine everything.
   std::vector<double> losses() const;
 
-  struct Best {
-    std::size_t candidate = static_cast<std::size_t>(-1);
-    double change = kImpossible;  ///< of the objective
-    double score = kImpossible;   ///< change, divided by the cost where `per_cost`
-    double tie = 0;               ///< this one takes the place of another if its score is lower by more
-  };
   /// Which candidates are allowed: not more than `repeats` times, of a cost up to `most_cost`, eligible, of a group
   /// that is not full.
   struct Allowed {
@@ -81,22 +77,20 @@ class PlanDesign {
     bool per_cost = false;
     double ceiling = kImpossible;  ///< of the change: candidates that cannot come below it need not be looked at
   };
-  /// The candidate whose adding lowers the objective most; the first of equal ones.
-  Best best_to_add(const Allowed& rules);
-  /// Of best_instead() for so many places, what needs the rows of all candidates, in one pass over them. It is used as
-  /// long as nothing changes; results are the same without.
-  static constexpr std::size_t kMostAhead = 8;
-  void look_ahead(std::span<const std::size_t> places);
-  bool looked_ahead(std::size_t place) const;
-
-  /// The candidate that lowers the objective most in the place of a chosen one, with the change by the whole exchange.
+  /// The candidate whose adding lowers the objective most; the first of equal ones (tie()).
+  ScoredCandidate best_to_add(const Allowed& rules);
+  /// For each of some places, the candidate that lowers the objective most in the place of the chosen one, with the
+  /// change by the whole exchange. One pass over the rows of the candidates serves all places.
   ///
   /// Most candidates are passed over by a bound. With loss_j of the chosen one, gain_i of the other and lambda_j the
   /// largest eigenvalue of W_j, the change is at least
   ///     determinant   loss_j - gain_i - n log(1 + q / n),   n the smaller number of rows
   ///     variance      loss_j - (sqrt(gain_i) + sqrt(q loss_j))^2,   q = |W_ij|^2 / (1 - lambda_j), Frobenius norm
   /// (docs/planning.md), and q itself is at most lambda_j trace(W_i) / (1 - lambda_j), which needs no products at all.
-  Best best_instead(std::size_t place, const Allowed& rules);
+  /// Whatever cannot be equal to the best one that any thread has found so far is passed over too.
+  /// @param rules  [places] for each
+  static constexpr std::size_t kMostPlaces = 8;
+  std::vector<ScoredCandidate> best_instead(std::span<const std::size_t> places, std::span<const Allowed> rules);
 
  private:
   struct Update {
@@ -113,29 +107,56 @@ class PlanDesign {
     std::array<double, kMostRows * kMostRows> w, g;
   };
 
+  /// A chosen reading that is to be exchanged.
+  struct Leaving {
+    std::size_t candidate = 0, rows = 0;
+    std::size_t column = 0;  // its first one
+    double loss = 0, root_loss = 0;
+    double stretch = 0;  // 1 / (1 - lambda_j)
+    double size = 0;     // lambda_j / (1 - lambda_j)
+    bool bounded = false;
+    Squares squares{};
+    std::atomic<double> least = kImpossible;  // change that is known to be possible
+  };
+
   /// Runs work(block) for all own blocks of candidates.
   template <typename Work>
   void for_own_blocks(const Work& work);
-  /// Of readings whose candidates may be those of other processes.
-  void bring_squares(std::span<const std::size_t> places, std::span<Squares> squares) const;
-  std::size_t owner_of(std::size_t candidate) const;
-  double loss_of(const double* w, const double* g, std::size_t n) const;
+  /// Of a chosen reading; every process finds the same, whoever keeps the candidate.
+  /// @param solved    M^-1 A_j', [v, rows]
+  /// @param weighted  C times that; not used for a determinant
+  void find_squares(std::size_t candidate, Eigen::Ref<const Eigen::MatrixXd> solved,
+                    Eigen::Ref<const Eigen::MatrixXd> weighted, Squares& squares) const;
+  double loss_of(const Squares& squares, std::size_t n) const;
   bool make_update(std::size_t candidate, double sign);
   void commit(double direction);
   void pass();
-  double* products(std::size_t block, std::size_t end);
-  /// Products of one candidate's rows with the factors, at the start of the block's array.
-  const double* products_of(std::size_t block, std::size_t candidate, std::size_t end);
+  /// Numbers of this thread: products of a block, and behind them those of one candidate.
+  double* scratch() const;
+  /// A_i times columns, in the numbers of this thread.
+  /// @param factors  columns, each [stride]
+  double* products(std::size_t block, const double* factors, std::size_t columns) const;
+  /// G_ij of a candidate and a leaving reading, in the numbers of this thread.
+  const double* mixed_products(std::size_t candidate, const Leaving& leaving) const;
   void measure(std::size_t candidate);
-  void best_in_block(std::size_t block, std::size_t before, std::size_t end, const Allowed& rules);
-  bool may_be_better(std::size_t candidate, double square, double limit) const;
+  void prepare(std::size_t place, const Allowed& rules, Leaving& leaving);
+  /// Lists of a block, for each place.
+  void best_in_block(std::size_t block, std::span<const Allowed> rules);
+  void best_in_block(std::size_t block, const double* x, Leaving& leaving, const Allowed& rules, PossibleBests& best);
+  /// Above this, a change is not equal to the best one.
+  double limit_of(const Leaving& leaving, const Allowed& rules) const;
+  bool may_be_better(std::size_t candidate, const Leaving& leaving, double square, double limit) const;
   void change_squares(const Update& update, const double* x, std::size_t n, double* w, double* g) const;
   void refresh_all();
-  double change_by_exchange(std::size_t before, std::size_t candidate, const double* x) const;
+  /// @param x      W_ij, columns x_stride_ apart
+  /// @param limit  changes that are not below it need not be known; kImpossible stands for them
+  double change_by_exchange(const Leaving& leaving, std::size_t candidate, const double* x, double limit) const;
+  double change_by_exchange_of_one(const Leaving& leaving, std::size_t candidate, double x, double limit) const;
   double change_by_adding(const double* w, const double* g, std::size_t n) const;
   bool allowed(std::size_t candidate, const Allowed& rules) const;
-  void keep_better(std::size_t candidate, double change, const Allowed& rules, Best& best) const;
-  Best best_of_blocks() const;
+  ScoredCandidate scored(std::size_t candidate, double change, const Allowed& rules) const;
+  /// For each of so many places, from their lists of all blocks.
+  std::vector<ScoredCandidate> best_of_blocks(std::size_t places) const;
   std::size_t block_count() const { return blocks_.size() - 1; }
 
   // Far above rounding, below what counts as a gain (PlanningOptions::smallest_gain); of the logarithm of the
@@ -156,35 +177,23 @@ class PlanDesign {
   std::vector<std::size_t> blocks_;  // first candidate of each block
   std::vector<std::size_t> square_;  // [candidates + 1] where W_i and G_i start
   std::vector<double> w_, g_;
-  std::vector<double> gain_;  // [candidates] change of the objective by adding
-  std::vector<double> size_;  // [candidates] trace of W_i
-  struct Ahead {
-    std::size_t place, first;  // first column of its products
-    Squares squares;
-  };
-  static constexpr std::size_t kNotAhead = static_cast<std::size_t>(-1);
-  std::vector<Ahead> ahead_;
-  std::size_t ahead_at_ = kNotAhead;          // first column of its products
-  std::vector<double> ahead_factors_;         // M^-1 A_j', columns, each [stride]
-  std::vector<std::vector<double>> ahead_x_;  // A_i times these, per block
-  struct Leaving {
-    double loss = 0, root_loss = 0;
-    double stretch = 0;  // 1 / (1 - lambda_j)
-    double size = 0;     // lambda_j / (1 - lambda_j)
-    std::size_t rows = 0;
-    bool bounded = false;
-    Squares squares;
-  } leaving_;                           // of the chosen reading that is to be exchanged
-  std::vector<double> factors_;         // columns, each [stride]
-  std::vector<Update> pending_;         // at most two
-  std::vector<std::vector<double>> x_;  // A_i times the columns, per block
+  std::vector<double> gain_;      // [candidates] change of the objective by adding
+  std::vector<double> size_;      // [candidates] trace of W_i
+  std::vector<Leaving> leaving_;  // [kMostPlaces]
+  std::size_t leaving_count_ = 0;
+  std::size_t leaving_columns_ = 0;    // of all of them, padded
+  std::vector<double> solved_;         // M^-1 A_j', columns, each [stride]
+  std::vector<double> solved_behind_;  // M^-1 C M^-1 A_j'
+  std::vector<double> factors_;        // columns, each [stride]
+  std::vector<Update> pending_;        // at most two
+  std::size_t scratch_size_ = 0;
   std::size_t x_stride_ = 0;
-  std::vector<Best> best_;  // per block
+  std::vector<PossibleBests> best_;  // [blocks][kMostPlaces]
 };
 
 template <typename Work>
 void PlanDesign::for_own_blocks(const Work& work) {
-  for_each_block(shares_.own_count(block_count()), threads_, [this, &work](std::size_t k) { work(shares_.own(k)); });
+  for_each_block(shares_.own_count(), threads_, [this, &work](std::size_t k) { work(shares_.own(k)); });
 }
 
 }  // namespace abbe

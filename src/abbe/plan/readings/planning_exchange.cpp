@@ -11,6 +11,7 @@ namespace {
 
 using Index = Eigen::Index;
 using planning::factorise;
+using planning::kSmallestPivot;
 using planning::log_determinant;
 using planning::Small;
 using planning::trace_of_quotient;
@@ -21,123 +22,143 @@ constexpr double kSafelyBelowOne = 1 - 1e-6;
 
 }  // namespace
 
-void PlanDesign::look_ahead(std::span<const std::size_t> all) {
-  ahead_.clear();
-  const std::span<const std::size_t> places = all.first(std::min(all.size(), kMostAhead));
-  std::array<Squares, kMostAhead> squares;
-  bring_squares(places, squares);
-  const Index v = static_cast<Index>(v_);
-  const Eigen::OuterStride<> stride(static_cast<Index>(space_.stride()));
-  std::size_t columns = 0;
-  for (const std::size_t place : places) {
-    const std::size_t candidate = chosen_[place], n = space_.row_count(candidate);
-    const RowsMap a(space_.row(space_.first_row(candidate)), static_cast<Index>(n), v, stride);
-    ColumnsMap solved(&ahead_factors_[columns * space_.stride()], v, static_cast<Index>(n), stride);
-    solved.noalias() = inverse_ * a.transpose();
-    ahead_.push_back({place, columns, squares[ahead_.size()]});
-    columns += n;
+std::vector<ScoredCandidate> PlanDesign::best_instead(std::span<const std::size_t> places,
+                                                      std::span<const Allowed> rules) {
+  leaving_count_ = places.size();
+  std::size_t column = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    leaving_.at(k).column = column;
+    prepare(places[k], rules[k], leaving_[k]);
+    column += leaving_[k].rows;
   }
-  columns = padded(columns, kColumnMultiple);
-  for_own_blocks([this, columns](std::size_t block) {
-    std::vector<double>& x = ahead_x_[block];
-    x.assign(columns * x_stride_, 0.0);
-    const std::size_t first = space_.first_row(blocks_[block]);
-    const std::size_t rows = padded(space_.first_row(blocks_[block + 1]) - first, kColumnMultiple);
-    add_cross_products(space_.row(first), rows, space_.stride(), ahead_factors_.data(), columns, space_.stride(),
-                       space_.stride(), x.data(), x_stride_);
-  });
+  leaving_columns_ = padded(column, kColumnMultiple);
+  for_own_blocks([&](std::size_t block) { best_in_block(block, rules); });
+  return best_of_blocks(places.size());
 }
 
-bool PlanDesign::looked_ahead(std::size_t place) const {
-  return std::any_of(ahead_.begin(), ahead_.end(), [place](const Ahead& one) { return one.place == place; });
-}
-
-PlanDesign::Best PlanDesign::best_instead(std::size_t place, const Allowed& rules) {
-  const std::size_t before = chosen_[place];
-  const Index v = static_cast<Index>(v_), n = static_cast<Index>(space_.row_count(before));
-  const Eigen::OuterStride<> stride(static_cast<Index>(space_.stride()));
-  const RowsMap a(space_.row(space_.first_row(before)), n, v, stride);
-  ColumnsMap solved(factors_.data(), v, n, stride);
+void PlanDesign::prepare(std::size_t place, const Allowed& rules, Leaving& leaving) {
+  const std::size_t before = chosen_[place], stride = space_.stride();
+  leaving.candidate = before;
+  leaving.rows = space_.row_count(before);
+  leaving.least = kImpossible;
+  const Index v = static_cast<Index>(v_), n = static_cast<Index>(leaving.rows);
+  const Eigen::OuterStride<> outer(static_cast<Index>(stride));
+  const RowsMap a(space_.row(space_.first_row(before)), n, v, outer);
+  ColumnsMap solved(&solved_[leaving.column * stride], v, n, outer);
   solved.noalias() = inverse_ * a.transpose();
-  std::size_t end = static_cast<std::size_t>(n);
+  auto weighted = scratch_.leftCols(n);
   if (by_variance_) {
-    auto weighted = scratch_.leftCols(n);
     weighted.noalias() = weight_ * solved;
-    ColumnsMap behind(&factors_[end * space_.stride()], v, n, stride);
-    behind.noalias() = inverse_ * weighted;
-    end *= 2;
+    ColumnsMap(&solved_behind_[leaving.column * stride], v, n, outer).noalias() = inverse_ * weighted;
   }
-  ahead_at_ = kNotAhead;
-  for (const Ahead& one : ahead_) {
-    if (one.place != place) continue;
-    ahead_at_ = one.first;
-    leaving_.squares = one.squares;
-  }
-  if (ahead_at_ == kNotAhead) bring_squares({&place, 1}, {&leaving_.squares, 1});
-  const Eigen::Map<const Eigen::MatrixXd> w(leaving_.squares.w.data(), n, n);
+  find_squares(before, solved, weighted, leaving.squares);
+  const Eigen::Map<const Eigen::MatrixXd> w(leaving.squares.w.data(), n, n);
   const double largest = SymmetricEigen<>(w, Eigen::EigenvaluesOnly).eigenvalues()[n - 1];
-  leaving_.loss = loss_of(leaving_.squares.w.data(), leaving_.squares.g.data(), static_cast<std::size_t>(n));
-  leaving_.bounded = leaving_.loss < kImpossible && largest < kSafelyBelowOne && !rules.per_cost;
-  leaving_.root_loss = std::sqrt(std::max(leaving_.loss, 0.0));
-  leaving_.stretch = leaving_.bounded ? 1 / (1 - largest) : 0;
+  leaving.loss = loss_of(leaving.squares, leaving.rows);
+  leaving.bounded = leaving.loss < kImpossible && largest < kSafelyBelowOne && !rules.per_cost;
+  leaving.root_loss = std::sqrt(std::max(leaving.loss, 0.0));
+  leaving.stretch = leaving.bounded ? 1 / (1 - largest) : 0;
   // Before any products: |W_ij|^2 <= lambda_j trace W_i.
-  leaving_.size = std::max(largest, 0.0) * leaving_.stretch;
-  leaving_.rows = static_cast<std::size_t>(n);
-  for_own_blocks([&](std::size_t block) { best_in_block(block, before, end, rules); });
-  return best_of_blocks();
+  leaving.size = std::max(largest, 0.0) * leaving.stretch;
 }
 
-bool PlanDesign::may_be_better(std::size_t candidate, double square, double limit) const {
-  if (!leaving_.bounded) return true;
+bool PlanDesign::may_be_better(std::size_t candidate, const Leaving& leaving, double square, double limit) const {
+  if (!leaving.bounded) return true;
   const double gain = -gain_[candidate];
-  double least = leaving_.loss;
+  double least = leaving.loss;
   if (by_variance_) {
-    const double sum = std::sqrt(std::max(gain, 0.0)) + std::sqrt(square) * leaving_.root_loss;
+    const double sum = std::sqrt(std::max(gain, 0.0)) + std::sqrt(square) * leaving.root_loss;
     least -= sum * sum;
   } else {
     // log det(I + S) <= n log(1 + trace(S) / n)
-    const double n = static_cast<double>(std::min(leaving_.rows, space_.row_count(candidate)));
+    const double n = static_cast<double>(std::min(leaving.rows, space_.row_count(candidate)));
     least -= gain + n * std::log1p(square / n);
   }
   return least < limit;
 }
 
-void PlanDesign::best_in_block(std::size_t block, std::size_t before, std::size_t end, const Allowed& rules) {
-  best_[block] = {};
-  const std::size_t n = leaving_.rows, first = space_.first_row(blocks_[block]);
-  const bool any = std::any_of(&size_[blocks_[block]], &size_[blocks_[block]] + (blocks_[block + 1] - blocks_[block]),
-                               [&](const double& size) {
-                                 const auto i = static_cast<std::size_t>(&size - size_.data());
-                                 return allowed(i, rules) && may_be_better(i, leaving_.size * size, rules.ceiling);
-                               });
-  if (!any) return;
-  const double* x = ahead_at_ == kNotAhead ? products(block, n) : ahead_x_[block].data() + ahead_at_ * x_stride_;
+double PlanDesign::limit_of(const Leaving& leaving, const Allowed& rules) const {
+  if (rules.per_cost) return rules.ceiling;
+  // Twice the tie, because bounds are rounded.
+  return std::min(rules.ceiling, leaving.least.load(std::memory_order_relaxed) + 2 * tie());
+}
+
+void PlanDesign::best_in_block(std::size_t block, std::span<const Allowed> rules) {
+  const double* x = nullptr;
+  for (std::size_t k = 0; k < leaving_count_; ++k) {
+    Leaving& leaving = leaving_[k];
+    PossibleBests& best = best_[block * kMostPlaces + k];
+    best.clear();
+    const double limit = limit_of(leaving, rules[k]);
+    bool any = false;
+    for (std::size_t i = blocks_[block]; !any && i < blocks_[block + 1]; ++i)
+      any = may_be_better(i, leaving, leaving.size * size_[i], limit) && allowed(i, rules[k]);
+    if (!any) continue;
+    if (x == nullptr) x = products(block, solved_.data(), leaving_columns_);
+    best_in_block(block, x + leaving.column * x_stride_, leaving, rules[k], best);
+  }
+}
+
+void PlanDesign::best_in_block(std::size_t block, const double* x, Leaving& leaving, const Allowed& rules,
+                               PossibleBests& best) {
+  const std::size_t first = space_.first_row(blocks_[block]);
   for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i) {
     if (!allowed(i, rules)) continue;
     const double* own = x + (space_.first_row(i) - first);
     double square = 0;
-    for (std::size_t c = 0; c < n; ++c)
+    for (std::size_t c = 0; c < leaving.rows; ++c)
       for (std::size_t r = 0; r < space_.row_count(i); ++r) square += own[r + c * x_stride_] * own[r + c * x_stride_];
-    if (!may_be_better(i, square * leaving_.stretch, std::min(rules.ceiling, best_[block].change))) continue;
-    if (end > n) own = products_of(block, i, end);
-    keep_better(i, change_by_exchange(before, i, own), rules, best_[block]);
+    const double limit = limit_of(leaving, rules);
+    if (!may_be_better(i, leaving, square * leaving.stretch, limit)) continue;
+    const double change = change_by_exchange(leaving, i, own, limit);
+    if (!(change < rules.ceiling)) continue;
+    best.add(scored(i, change, rules));
+    for (double known = leaving.least; change < known && !leaving.least.compare_exchange_weak(known, change);) {
+    }
   }
 }
 
-const double* PlanDesign::products_of(std::size_t block, std::size_t candidate, std::size_t end) {
-  // Behind the columns of the whole block.
-  double* x = x_[block].data() + padded(leaving_.rows, kColumnMultiple) * x_stride_;
-  const std::size_t columns = padded(end, kColumnMultiple), rows = padded(space_.row_count(candidate), kColumnMultiple);
-  for (std::size_t c = 0; c < columns; ++c) std::fill(x + c * x_stride_, x + c * x_stride_ + rows, 0.0);
-  add_cross_products(space_.row(space_.first_row(candidate)), rows, space_.stride(), factors_.data(), columns,
-                     space_.stride(), space_.stride(), x, x_stride_);
+const double* PlanDesign::mixed_products(std::size_t candidate, const Leaving& leaving) const {
+  constexpr std::size_t kFew = 8;  // the product of many wants rows and columns in fours
+  const std::size_t rows = space_.row_count(candidate), stride = space_.stride();
+  const double* const a = space_.row(space_.first_row(candidate));
+  const double* const b = &solved_behind_[leaving.column * stride];
+  double* x = scratch() + leaving_columns_ * x_stride_;
+  if (rows * leaving.rows < kFew) {
+    const auto length = static_cast<Index>(stride);
+    for (std::size_t c = 0; c < leaving.rows; ++c)
+      for (std::size_t r = 0; r < rows; ++r)
+        x[r + c * x_stride_] = Eigen::Map<const Eigen::VectorXd>(a + r * stride, length)
+                                   .dot(Eigen::Map<const Eigen::VectorXd>(b + c * stride, length));
+    return x;
+  }
+  const std::size_t all_rows = padded(rows, kColumnMultiple), columns = padded(leaving.rows, kColumnMultiple);
+  for (std::size_t c = 0; c < columns; ++c) std::fill_n(x + c * x_stride_, all_rows, 0.0);
+  add_cross_products(a, all_rows, stride, b, columns, stride, stride, x, x_stride_);
   return x;
 }
 
+// As below, for one row each.
+double PlanDesign::change_by_exchange_of_one(const Leaving& leaving, std::size_t candidate, double x,
+                                             double limit) const {
+  const double wi = w_[square_[candidate]], sum_i = 1 + wi;
+  if (!(sum_i > kSmallestPivot)) return kImpossible;
+  const double k = x / sum_i, sum_j = 1 - (leaving.squares.w[0] - x * k);
+  if (!(sum_j > kSmallestPivot)) return kImpossible;
+  if (!by_variance_) return -std::log(sum_i * sum_j);
+  const double gi = g_[square_[candidate]], gj = leaving.squares.g[0];
+  const double apart = std::sqrt(std::max(gj, 0.0)) - std::abs(k) * std::sqrt(std::max(gi, 0.0));
+  if (!(apart * apart / sum_j - gi / sum_i < limit)) return kImpossible;
+  return (gj - 2 * *mixed_products(candidate, leaving) * k + k * gi * k) / sum_j - gi / sum_i;
+}
+
 // Adding i, then taking out j: with W_ij = A_i M^-1 A_j' and K = (I + W_i)^-1 W_ij, W_j becomes W_j - W_ij' K, and
-// G_j becomes G_j - K' G_ij - G_ij' K + K' G_i K.
-double PlanDesign::change_by_exchange(std::size_t before, std::size_t candidate, const double* x) const {
-  const std::size_t n = space_.row_count(candidate), m = space_.row_count(before);
+// G_j becomes G_j - K' G_ij - G_ij' K + K' G_i K. Of the last, tr((I - W_j)^-1 G_j) is at least (a - b)^2 with
+// a^2 = tr((I - W_j)^-1 G_j) of the former G_j and b^2 = tr((I - W_j)^-1 K' G_i K), by the triangle inequality.
+double PlanDesign::change_by_exchange(const Leaving& leaving, std::size_t candidate, const double* x,
+                                      double limit) const {
+  const std::size_t n = space_.row_count(candidate), m = leaving.rows;
+  if (n == 1 && m == 1) return change_by_exchange_of_one(leaving, candidate, *x, limit);
   const double* wi = &w_[square_[candidate]];
   Small lower, k, wj, gj;
   if (!factorise(wi, n, 1, lower)) return kImpossible;
@@ -161,7 +182,7 @@ double PlanDesign::change_by_exchange(std::size_t before, std::size_t candidate,
   };
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      wj[i * m + j] = leaving_.squares.w[i * m + j] - product(x, i, k.data(), j, x_stride_);
+      wj[i * m + j] = leaving.squares.w[i * m + j] - product(x, i, k.data(), j, x_stride_);
       wj[j * m + i] = wj[i * m + j];
     }
   Small lower_j;
@@ -169,8 +190,7 @@ double PlanDesign::change_by_exchange(std::size_t before, std::size_t candidate,
   if (!by_variance_) return -log_determinant(lower, n) - log_determinant(lower_j, m);
 
   const double* gi = &g_[square_[candidate]];
-  const double* mixed = x + m * x_stride_;
-  Small gk;  // G_i K
+  Small gk, kgk;  // G_i K, K' G_i K
   for (std::size_t c = 0; c < m; ++c)
     for (std::size_t r = 0; r < n; ++r) {
       double sum = 0;
@@ -178,12 +198,20 @@ double PlanDesign::change_by_exchange(std::size_t before, std::size_t candidate,
       gk[c * n + r] = sum;
     }
   for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = 0; j <= i; ++j) kgk[i * m + j] = kgk[j * m + i] = product(gk.data(), i, k.data(), j, n);
+  const auto root = [&](const double* g) { return std::sqrt(std::max(trace_of_quotient(lower_j, g, m), 0.0)); };
+  const double gain = trace_of_quotient(lower, gi, n);
+  const double apart = root(leaving.squares.g.data()) - root(kgk.data());
+  if (!(apart * apart - gain < limit)) return kImpossible;
+
+  const double* mixed = mixed_products(candidate, leaving);
+  for (std::size_t i = 0; i < m; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      gj[i * m + j] = leaving_.squares.g[i * m + j] - product(mixed, i, k.data(), j, x_stride_) -
-                      product(mixed, j, k.data(), i, x_stride_) + product(gk.data(), i, k.data(), j, n);
+      gj[i * m + j] = leaving.squares.g[i * m + j] - product(mixed, i, k.data(), j, x_stride_) -
+                      product(mixed, j, k.data(), i, x_stride_) + kgk[i * m + j];
       gj[j * m + i] = gj[i * m + j];
     }
-  return trace_of_quotient(lower_j, gj.data(), m) - trace_of_quotient(lower, gi, n);
+  return trace_of_quotient(lower_j, gj.data(), m) - gain;
 }
 
 }  // namespace abbe

@@ -10,15 +10,9 @@
 #include "abbe/plan/readings/planning.h"
 #include "abbe/plan/readings/planning_best.h"
 #include "abbe/plan/readings/planning_design.h"
-#include "abbe/plan/readings/planning_small.h"
 
 namespace abbe {
 namespace {
-
-using planning::factorise;
-using planning::log_determinant;
-using planning::Small;
-using planning::trace_of_quotient;
 
 /// In front of the bytes of a process.
 struct GivenBy {
@@ -76,8 +70,13 @@ std::uint64_t fingerprint_of_choosing(const PlanningSpace& space, const Planning
   return digest.value();
 }
 
-PlanShares::PlanShares(const WorkInStep& in_step, std::uint64_t fingerprint)
-    : in_step_(in_step), fingerprint_(fingerprint) {}
+PlanShares::PlanShares(const WorkInStep& in_step, std::uint64_t fingerprint, std::size_t blocks)
+    : in_step_(in_step), fingerprint_(fingerprint) {
+  constexpr std::size_t kMostTogether = 32, kTurns = 128;
+  together_ = std::clamp<std::size_t>(blocks / (in_step.processes * kTurns), 1, kMostTogether);
+  const std::size_t turn = in_step.processes * together_, before = in_step.rank * together_, last = blocks % turn;
+  own_count_ = blocks / turn * together_ + std::min(together_, last - std::min(last, before));
+}
 
 std::vector<std::byte> PlanShares::merged(std::vector<std::byte> own, const WorkInStep::Merge& merge) const {
   return any() ? in_step_.merged(fingerprint_, std::move(own), merge) : own;
@@ -93,50 +92,15 @@ void PlanShares::complete(std::span<const Piece> pieces) const {
     if (piece.owner != in_step_.rank) unpack_numbers(all.parts.at(piece.owner), piece.numbers);
 }
 
-PlanDesign::Best PlanDesign::best_of_blocks() const {
-  PossibleBests own;
-  for (std::size_t k = 0; k < shares_.own_count(block_count()); ++k) own.add({shares_.own(k), best_[shares_.own(k)]});
-  if (!shares_.any()) return best_of(own.blocks());
-  return best_of(blocks_in(shares_.merged(bytes_of(own.blocks()), merge_possible_bests)));
-}
-
-std::size_t PlanDesign::owner_of(std::size_t candidate) const {
-  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), candidate);
-  return shares_.owner(static_cast<std::size_t>(after - blocks_.begin()) - 1);
-}
-
-void PlanDesign::bring_squares(std::span<const std::size_t> places, std::span<Squares> squares) const {
-  std::vector<PlanShares::Piece> pieces;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const std::size_t candidate = chosen_[places[k]], owner = owner_of(candidate);
-    const std::size_t first = square_[candidate], size = square_[candidate + 1] - first;
-    const auto bring = [&](const std::vector<double>& from, Small& to) {
-      if (owner == shares_.rank()) std::copy_n(&from[first], size, to.begin());
-      pieces.push_back({owner, {to.data(), size}});
-    };
-    bring(w_, squares[k].w);
-    if (by_variance_) bring(g_, squares[k].g);
-  }
-  shares_.complete(pieces);
-}
-
-double PlanDesign::loss_of(const double* w, const double* g, std::size_t n) const {
-  Small lower;
-  if (!factorise(w, n, -1, lower)) return kImpossible;
-  return by_variance_ ? trace_of_quotient(lower, g, n) : -log_determinant(lower, n);
-}
-
-std::vector<double> PlanDesign::losses() const {
-  std::vector<double> result(chosen_.size(), 0.0);
-  std::vector<PlanShares::Piece> pieces;
-  for (std::size_t place = 0; place < chosen_.size(); ++place) {
-    const std::size_t candidate = chosen_[place], owner = owner_of(candidate), first = square_[candidate];
-    pieces.push_back({owner, {&result[place], 1}});
-    if (owner != shares_.rank()) continue;
-    result[place] = loss_of(&w_[first], by_variance_ ? &g_[first] : nullptr, space_.row_count(candidate));
-  }
-  shares_.complete(pieces);
-  return result;
+std::vector<ScoredCandidate> PlanDesign::best_of_blocks(std::size_t places) const {
+  std::vector<PossibleBests> lists(places);
+  for (std::size_t k = 0; k < shares_.own_count(); ++k)
+    for (std::size_t place = 0; place < places; ++place)
+      lists[place].append(best_[shares_.own(k) * kMostPlaces + place]);
+  if (shares_.any()) lists = lists_of(shares_.merged(bytes_of(lists), merge_possible_bests));
+  std::vector<ScoredCandidate> best;
+  for (const PossibleBests& list : lists) best.push_back(list.best());
+  return best;
 }
 
 }  // namespace abbe

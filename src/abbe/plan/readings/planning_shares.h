@@ -27,20 +27,22 @@ struct GatheredBytes {
 GatheredBytes gather(const WorkInStep& in_step, std::uint64_t fingerprint, std::span<const std::byte> own);
 
 /// Blocks are dealt out to the processes in turn, so that neighbouring blocks, which are alike, do not burden one of
-/// them.
+/// them. Of many blocks, some neighbours go together: memory is read faster in longer pieces.
 class PlanShares {
  public:
   PlanShares() = default;  ///< one process
-  PlanShares(const WorkInStep& in_step, std::uint64_t fingerprint);
+  PlanShares(const WorkInStep& in_step, std::uint64_t fingerprint, std::size_t blocks);
 
+  /// The same processes with other blocks.
+  PlanShares of(std::size_t blocks) const { return {in_step_, fingerprint_, blocks}; }
   bool any() const { return in_step_.processes > 1; }
-  std::size_t owner(std::size_t block) const { return block % in_step_.processes; }
+  std::size_t owner(std::size_t block) const { return block / together_ % in_step_.processes; }
   std::size_t rank() const { return in_step_.rank; }
   /// How many of the blocks are own ones, and the k-th of these.
-  std::size_t own_count(std::size_t blocks) const {
-    return (blocks + in_step_.processes - 1 - in_step_.rank) / in_step_.processes;
+  std::size_t own_count() const { return own_count_; }
+  std::size_t own(std::size_t k) const {
+    return (k / together_ * in_step_.processes + in_step_.rank) * together_ + k % together_;
   }
-  std::size_t own(std::size_t k) const { return in_step_.rank + k * in_step_.processes; }
 
   /// What merging the bytes of all processes makes (WorkInStep).
   std::vector<std::byte> merged(std::vector<std::byte> own, const WorkInStep::Merge& merge) const;
@@ -56,6 +58,8 @@ class PlanShares {
  private:
   WorkInStep in_step_{};
   std::uint64_t fingerprint_ = 0;
+  std::size_t own_count_ = 0;
+  std::size_t together_ = 1;
 };
 
 }  // namespace abbe

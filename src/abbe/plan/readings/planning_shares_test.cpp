@@ -1,5 +1,8 @@
+#include "abbe/plan/readings/planning_shares.h"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <barrier>
 #include <thread>
@@ -101,7 +104,7 @@ class SharedPlan : public ::testing::TestWithParam<SharedCase> {
     PlanningOptions options = options_;
     options.threads = threads;
     options.in_step = in_step;
-    const PlanningSpace space(candidates_, Eigen::MatrixXd(), in_step);
+    const PlanningSpace space(candidates_, Eigen::MatrixXd(), in_step, threads);
     std::vector<ReadingPlan> all = {plan_readings(space, options)};
     options.most_passes = 2;
     const std::vector<std::size_t> counts = {5, 20, 30, 37, 60};
@@ -149,6 +152,29 @@ TEST_P(SharedPlan, IsTheSameForAnyNumberOfProcessesAndThreads) {
 INSTANTIATE_TEST_SUITE_P(ByCriterion, SharedPlan,
                          ::testing::Values(SharedCase{false, false, false}, SharedCase{true, false, false},
                                            SharedCase{true, true, false}, SharedCase{false, false, true}));
+
+TEST(PlanSharesTest, GiveEveryBlockToOneProcess) {
+  for (const std::size_t blocks : {0U, 1U, 5U, 63U, 64U, 65U, 1000U, 5209U, 70001U}) {
+    for (const std::size_t processes : {1U, 2U, 3U, 7U, 100U}) {
+      std::vector<std::size_t> owners(blocks, processes);
+      std::size_t least = blocks, most = 0;
+      for (std::size_t rank = 0; rank < processes; ++rank) {
+        const PlanShares shares({processes, rank, {}}, 0, blocks);
+        least = std::min(least, shares.own_count());
+        most = std::max(most, shares.own_count());
+        for (std::size_t k = 0; k < shares.own_count(); ++k) {
+          ASSERT_LT(shares.own(k), blocks);
+          ASSERT_EQ(owners[shares.own(k)], processes);
+          owners[shares.own(k)] = rank;
+          ASSERT_EQ(shares.owner(shares.own(k)), rank);
+          if (k > 0) ASSERT_LT(shares.own(k - 1), shares.own(k));
+        }
+      }
+      EXPECT_EQ(std::count(owners.begin(), owners.end(), processes), 0);
+      EXPECT_LE(most, least + least / 128 + 1);
+    }
+  }
+}
 
 TEST(SharedPlanTest, HasAnotherFingerprintWhereAnythingIsAnother) {
   const auto fingerprint = [](const PlanningCandidates& candidates, const PlanningOptions& options) {

@@ -7,11 +7,8 @@
 
 #include "abbe/geometry/column_norms.h"
 #include "abbe/geometry/cross_products.h"
-#include "abbe/geometry/decompositions.h"
-#include "abbe/geometry/digest.h"
-#include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/singular_values.h"
-#include "abbe/plan/readings/planning_shares.h"
+#include "abbe/plan/readings/all_rows.h"
 
 namespace abbe {
 namespace {
@@ -19,36 +16,10 @@ namespace {
 using Index = Eigen::Index;
 constexpr double kDetermined = 1e-10;
 constexpr double kWeakestRounding = 1e-14;
-constexpr Index kRowsBetweenReductions = 512;
 
-/// Factor R of rows that come in pieces; the rows themselves are not kept.
-class StreamingFactor {
- public:
-  explicit StreamingFactor(Index columns) : columns_(columns), work_(columns + kRowsBetweenReductions, columns) {
-    work_.setZero();
-  }
-  /// The row to be written next; valid until add().
-  auto next() { return work_.row(columns_ + filled_); }
-  void add() {
-    if (++filled_ == kRowsBetweenReductions) reduce();
-  }
-  Eigen::MatrixXd factor() {
-    reduce();
-    return work_.topRows(columns_);
-  }
-
- private:
-  void reduce() {
-    if (filled_ == 0) return;
-    Qr::in_place(work_);
-    for (Index j = 0; j < columns_; ++j) work_.col(j).tail(work_.rows() - j - 1).setZero();
-    filled_ = 0;
-  }
-
-  Index columns_;
-  Index filled_ = 0;
-  Eigen::MatrixXd work_;
-};
+void require_finite(const PlanningCandidates& candidates) {
+  if (!candidates.rows.allFinite()) throw std::invalid_argument("planning: a derivative is not finite");
+}
 
 void validate(const PlanningCandidates& candidates, const Eigen::MatrixXd& known) {
   const auto fail = [](const char* what) { throw std::invalid_argument(what); };
@@ -66,44 +37,7 @@ void validate(const PlanningCandidates& candidates, const Eigen::MatrixXd& known
   for (const double cost : candidates.cost_s)
     if (!(cost > 0) || !std::isfinite(cost)) fail("planning: a cost is not above zero");
   if (known.rows() > 0 && known.cols() != candidates.rows.cols()) fail("planning: known rows have another length");
-  if (!candidates.rows.allFinite() || !known.allFinite()) fail("planning: a derivative is not finite");
-}
-
-using SeenRows = Eigen::Map<PlanningCandidates::Rows, 0, Eigen::OuterStride<>>;
-
-/// The product of all rows, of which each process computes some. These begin at multiples of four rows, which the
-/// product takes together, so that the sums are rounded as if one process had computed all.
-void multiply_rows(const PlanningCandidates::Rows& rows, const Eigen::MatrixXd& factor, const WorkInStep& in_step,
-                   SeenRows product) {
-  constexpr Index kTogether = 4, kFew = 64, kMostRows = Index{1} << 16;
-  constexpr double kWorthSharing = 1e7;  // sums of products
-  const auto processes = static_cast<Index>(in_step.processes);
-  if (processes == 1 || static_cast<double>(product.size()) * static_cast<double>(rows.cols()) < kWorthSharing) {
-    product.noalias() = rows * factor;
-    return;
-  }
-  Digest digest;
-  digest.add_text(vector_instructions());
-  digest.add(static_cast<std::uint64_t>(rows.rows()));
-  digest.add_numbers({factor.data(), static_cast<std::size_t>(factor.size())});
-  const Index each = std::min(kMostRows, (rows.rows() / processes / kTogether + 1) * kTogether);
-  PlanningCandidates::Rows own;
-  for (Index start = 0; start < rows.rows(); start += processes * each) {
-    const auto first = [&](Index process) { return std::min(rows.rows(), start + process * each); };
-    const auto rank = static_cast<Index>(in_step.rank);
-    // Few rows would be multiplied in another way: those before them are computed too.
-    const Index before = first(rank + 1) - first(rank) < kFew ? std::min(first(rank), kFew) : 0;
-    own.noalias() = rows.middleRows(first(rank) - before, first(rank + 1) - first(rank) + before) * factor;
-    const auto left_out = static_cast<std::size_t>(before * own.cols());
-    const std::span<const double> numbers(own.data() + left_out, static_cast<std::size_t>(own.size()) - left_out);
-    const GatheredBytes all = gather(in_step, digest.value(), std::as_bytes(numbers));
-    for (Index process = 0; process < processes; ++process) {
-      std::span<const std::byte> bytes = all.parts[static_cast<std::size_t>(process)];
-      for (Index row = first(process); row < first(process + 1); ++row)
-        unpack_numbers(bytes, {&product(row, 0), static_cast<std::size_t>(product.cols())});
-      require_unpacked(bytes);
-    }
-  }
+  if (!known.allFinite()) fail("planning: a derivative is not finite");
 }
 
 void add_known(const PlanningSpace& space, StreamingFactor& stream) {
@@ -146,24 +80,19 @@ PlanValue value_of(const PlanningSpace& space, const RightSingular& svd, const E
 }  // namespace
 
 PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::MatrixXd& known,
-                             const WorkInStep& in_step, double threshold)
+                             const WorkInStep& in_step, int threads, double threshold)
     : first_row_(candidates.first_row), cost_s_(candidates.cost_s) {
   validate(candidates, known);
-  const Index p = candidates.rows.cols(), all = candidates.rows.rows();
-  column_norms_ = candidates.rows.colwise().squaredNorm().transpose();
+  const Index p = candidates.rows.cols();
+  column_norms_ = squares_of_columns(candidates.rows, threads);
+  // Numbers that are not finite have no finite sum; but large ones may not have one either.
+  if (!column_norms_.allFinite()) require_finite(candidates);
   if (known.rows() > 0) column_norms_ += known.colwise().squaredNorm().transpose();
   column_norms_ = column_norms_.cwiseSqrt().eval();
   drop_rounding_columns(column_norms_);
   const Eigen::VectorXd inverse = column_norms_.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; });
 
-  StreamingFactor stream(p);
-  const auto add = [&](const auto& row) {
-    stream.next() = row.cwiseProduct(inverse.transpose());
-    stream.add();
-  };
-  for (Index k = 0; k < known.rows(); ++k) add(known.row(k));
-  for (Index k = 0; k < all; ++k) add(candidates.rows.row(k));
-  const RightSingular svd = right_singular(stream.factor());
+  const RightSingular svd = right_singular(factor_of_rows(candidates.rows, known, inverse, {in_step, threads}));
   const double largest = p > 0 ? std::max(svd.values[0], 1e-300) : 1;
   singular_values_ = svd.values / largest;
   Index v = p;
@@ -177,11 +106,8 @@ PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::
 
   known_rows_ = known.rows() > 0 ? Eigen::MatrixXd(known * estimates_from_seen_) : Eigen::MatrixXd(0, v);
   known_information_ = known_rows_.transpose() * known_rows_;
-  // Padded as cross_products.h wants it: length to 8, rows to 4.
-  stride_ = (static_cast<std::size_t>(v) + 7) / 8 * 8;
-  rows_.assign((static_cast<std::size_t>(all) + 4) * stride_, 0.0);
-  multiply_rows(candidates.rows, estimates_from_seen_, in_step,
-                {rows_.data(), all, v, Eigen::OuterStride<>(static_cast<Index>(stride_))});
+  stride_ = padded(static_cast<std::size_t>(v), kLengthMultiple);
+  rows_ = multiply_rows(candidates.rows, estimates_from_seen_, {in_step, threads}, stride_);
 }
 
 Eigen::MatrixXd PlanningSpace::functionals(const Eigen::MatrixXd& rows) const { return rows * estimates_from_seen_; }
@@ -201,7 +127,10 @@ PlanValue value_of(const PlanningSpace& space, std::span<const std::size_t> chos
 }
 
 PlanValue value_of(const PlanningSpace& space, const PlanningCandidates& others, const Eigen::MatrixXd& functionals) {
-  if (others.rows.rows() > 0) validate(others, Eigen::MatrixXd());
+  if (others.rows.rows() > 0) {
+    validate(others, Eigen::MatrixXd());
+    require_finite(others);
+  }
   StreamingFactor stream(static_cast<Index>(space.dimension()));
   add_known(space, stream);
   for (Index k = 0; k < others.rows.rows(); ++k) {

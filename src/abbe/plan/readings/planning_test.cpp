@@ -117,6 +117,11 @@ INSTANTIATE_TEST_SUITE_P(ByCriterion, SmallPlan,
                                            BruteForceCase{12, 1, 3, 5, 8}, BruteForceCase{11, 3, 5, 4, 0},
                                            BruteForceCase{11, 2, 4, 4, 6}, BruteForceCase{13, 1, 4, 4, 0}));
 
+ScoredCandidate best_instead(PlanDesign& design, std::size_t place) {
+  const PlanDesign::Allowed rules;
+  return design.best_instead({&place, 1}, {&rules, 1}).front();
+}
+
 class UpdatedDesign : public ::testing::TestWithParam<bool> {};
 
 TEST_P(UpdatedDesign, EqualsOneFactorisedAnew) {
@@ -141,7 +146,7 @@ TEST_P(UpdatedDesign, EqualsOneFactorisedAnew) {
       ASSERT_TRUE(updated.remove(place));
       EXPECT_NEAR(updated.objective() - before, loss, 1e-9 * std::abs(before));
     } else {
-      const PlanDesign::Best best = updated.best_instead(place, {});
+      const ScoredCandidate best = best_instead(updated, place);
       ASSERT_TRUE(updated.exchange(place, step % 4 == 2 ? best.candidate : candidate));
       if (step % 4 == 2) {
         EXPECT_NEAR(updated.objective() - before, best.change, 1e-9 * std::abs(before));
@@ -164,16 +169,14 @@ TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
   PlanDesign design(space, functionals, 2);
   std::vector<std::size_t> chosen, places;
   for (std::size_t i = 0; i < 12; ++i) chosen.push_back(i);
-  for (std::size_t i = 0; i < PlanDesign::kMostAhead; ++i) places.push_back(i);
+  for (std::size_t i = 0; i < PlanDesign::kMostPlaces; ++i) places.push_back(i);
   ASSERT_TRUE(design.rebuild(chosen, 0));
-  std::vector<PlanDesign::Best> alone;
-  for (const std::size_t place : places) alone.push_back(design.best_instead(place, {}));
-  design.look_ahead(places);
+  const std::vector<PlanDesign::Allowed> rules(places.size());
+  const std::vector<ScoredCandidate> together = design.best_instead(places, rules);
   for (const std::size_t place : places) {
-    ASSERT_TRUE(design.looked_ahead(place));
-    const PlanDesign::Best best = design.best_instead(place, {});
-    EXPECT_EQ(best.candidate, alone[place].candidate);
-    EXPECT_EQ(best.change, alone[place].change);
+    const ScoredCandidate best = best_instead(design, place);
+    EXPECT_EQ(together[place].candidate, best.candidate);
+    EXPECT_EQ(together[place].change, best.change);
     // Every exchange by itself.
     double least = 1e300;
     for (std::size_t i = 12; i < 250; i += place == 0 ? 1 : 23) {
@@ -184,11 +187,25 @@ TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
     }
     EXPECT_LE(best.change, least + 1e-9 * std::abs(design.objective()));
   }
-  design.add(100);
-  EXPECT_FALSE(design.looked_ahead(0));
 }
 
 INSTANTIATE_TEST_SUITE_P(ByCriterion, UpdatedDesign, ::testing::Bool());
+
+TEST(PlanningTest, ManyCandidatesMeasuredOnceHaveTheUnitMatrixAsInformation) {
+  // More rows than one block of the factorisation has, and not a multiple of anything.
+  const PlanningCandidates candidates = random_candidates(6671, 3, 13, 21);
+  const Eigen::MatrixXd known = random_matrix(5, 13, 22);
+  const PlanningSpace space(candidates, known, WorkInStep(), 1), same(candidates, known, WorkInStep(), 3);
+  ASSERT_EQ(space.dimension(), 13u);
+  Eigen::MatrixXd information = space.known_information();
+  for (std::size_t k = 0; k < 3 * 6671; ++k) {
+    const Eigen::Map<const Eigen::VectorXd> row(space.row(k), 13);
+    information += row * row.transpose();
+    EXPECT_EQ(row, Eigen::Map<const Eigen::VectorXd>(same.row(k), 13));
+    for (std::size_t behind = 13; behind < space.stride(); ++behind) EXPECT_EQ(space.row(k)[behind], 0);
+  }
+  EXPECT_LT((information - Eigen::MatrixXd::Identity(13, 13)).norm(), 1e-11);
+}
 
 TEST(PlanningTest, CandidatesOfOneRowAndOfThreeAreChosenTogether) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

@@ -141,7 +141,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
   result.hidden = candidates.hidden;
   result.forbidden = candidates.forbidden;
   add_reading_costs(study, candidates);
-  auto space = std::make_unique<const PlanningSpace>(candidates.rows, model.known(), job.in_step);
+  auto space = std::make_unique<const PlanningSpace>(candidates.rows, model.known(), job.in_step, study.threads);
   result.parameters = space->parameter_count();
   result.seen = space->dimension();
   const Eigen::VectorXd unseen = space->unseen_part(predictions);
@@ -231,7 +231,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const Conditi
     }
     PlanningModel::Candidates around = model.readings_at(tried);
     add_reading_costs(study, around);
-    auto space_around = std::make_unique<const PlanningSpace>(around.rows, model.known(), job.in_step);
+    auto space_around = std::make_unique<const PlanningSpace>(around.rows, model.known(), job.in_step, study.threads);
     if (space_around->dimension() != space->dimension()) break;
     std::map<CandidateReading, std::size_t> places;
     for (std::size_t i = 0; i < around.readings.size(); ++i) places[around.readings[i]] = i;

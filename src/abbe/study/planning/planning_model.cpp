@@ -297,6 +297,13 @@ PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
 
 PlanningModel::Candidates PlanningModel::readings_at(const std::vector<PosesAt>& tried,
                                                      const std::vector<std::size_t>& sight) const {
+  Candidates result = seen_at(tried, sight);
+  result.rows = candidate_rows(problem(result.of_setup), study_.threads);
+  return result;
+}
+
+PlanningModel::Candidates PlanningModel::seen_at(const std::vector<PosesAt>& tried,
+                                                 const std::vector<std::size_t>& sight) const {
   Candidates result;
   std::vector<InstrumentReadings> readings = no_readings();
   std::vector<std::vector<std::size_t>> condition(devices_.size()), part(devices_.size());
@@ -313,7 +320,6 @@ PlanningModel::Candidates PlanningModel::readings_at(const std::vector<PosesAt>&
     for (const std::size_t one : condition[s]) states.push_back(states_.conditions()[one].states);
     give_states(states, readings[s].poses);
   }
-  result.rows = candidate_rows(problem(readings));
   for (std::size_t s = 0; s < readings.size(); ++s)
     for (std::size_t k = 0; k < readings[s].count(); ++k) {
       std::vector<double> inputs;

@@ -128,11 +128,12 @@ PlanningSetting planning_setting(const Study& study, const std::vector<std::size
   PlanningSetting setting;
   setting.model = std::make_unique<const PlanningModel>(study);
   const std::vector<PosesAt> poses = poses_to_try(study, conditions, count);
-  setting.candidates = setting.model->readings_at(poses);
+  const bool points_only = sees_points_only(study);
+  setting.candidates = points_only ? setting.model->readings_at(poses) : setting.model->seen_at(poses);
   std::vector<AxisRange> predicted = study.planning->axes;
   // Trackers are planned for the ranges of the plan, which they can all see. What other instruments see decides where
   // errors can be known at all.
-  if (!sees_points_only(study) && !setting.candidates.readings.empty()) {
+  if (!points_only && !setting.candidates.readings.empty()) {
     const ErrorSet errors = measurable_errors(study, setting.candidates);
     setting.model = std::make_unique<const PlanningModel>(study, &errors);
     setting.candidates = setting.model->readings_at(poses);
