@@ -133,6 +133,7 @@ class Summation {
       std::function<std::vector<std::uint64_t>(const ReadingPoint& reference, const std::stop_token& stop)>;
 
   Summation() = default;
+  // NOLINTBEGIN(google-explicit-constructor): a function is given where a summation is asked for
   /// @param fingerprints  empty: the sums are checked with fingerprints that take a pass over all readings
   template <class Callable>
   requires std::is_constructible_v<Sum, Callable> Summation(Callable sum, Fingerprints fingerprints = {})
@@ -142,6 +143,7 @@ class Summation {
         fingerprints_(std::move(fingerprints)) {}
   template <class Callable>
   requires std::is_constructible_v<SharedSum, Callable> Summation(Callable sum) : sum_(std::move(sum)) {}
+  // NOLINTEND(google-explicit-constructor)
 
   explicit operator bool() const { return static_cast<bool>(sum_); }
   SumOfReadings operator()(const SumRequest& request, const Here& here, const std::stop_token& stop) const {

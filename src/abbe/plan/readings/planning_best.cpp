@@ -60,8 +60,8 @@ PossibleBests PossibleBests::unpack(std::span<const std::byte>& bytes) {
   unpack_numbers(bytes, numbers);
   PossibleBests bests;
   bests.least_ = numbers[0];
-  if (!(numbers[1] >= 0 && numbers[1] <= static_cast<double>(bytes.size() / sizeof(ScoredCandidate))))
-    throw WorkError("a list of candidates is cut off");
+  const std::size_t most = bytes.size() / sizeof(ScoredCandidate);
+  if (!(numbers[1] >= 0 && numbers[1] <= static_cast<double>(most))) throw WorkError("a list of candidates is cut off");
   bests.list_.resize(static_cast<std::size_t>(numbers[1]));
   const std::size_t size = bests.list_.size() * sizeof(ScoredCandidate);
   if (size > 0) std::memcpy(bests.list_.data(), bytes.data(), size);

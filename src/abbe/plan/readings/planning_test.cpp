@@ -461,7 +461,8 @@ TEST(PlanningTest, ReadingsThatAreWorthTheSameAreChosenAlikeWhateverTheRounding)
   PlanningCandidates candidates;
   candidates.rows.resize(11 * 11 * 2, 7);
   for (Index i = 0; i < candidates.rows.rows(); ++i) {
-    const double x = static_cast<double>(i / 2 % 11 - 5) / 5, y = static_cast<double>(i / 22 - 5) / 5;
+    const Index column = i / 2 % 11, row = i / 22;
+    const double x = static_cast<double>(column - 5) / 5, y = static_cast<double>(row - 5) / 5;
     const double sign = i % 2 == 0 ? 1 : -1;
     candidates.rows.row(i) << 1, x, y, x * x, x * y, y * y, sign;
   }
