@@ -24,10 +24,9 @@ namespace abbe {
 
 /// A column of a table.
 struct ReproducedColumn {
-  std::string name;  ///< "largest deviation"
-  std::string unit =
-      "";            ///< of its numbers: "um", "%", "arcsec"; empty: texts, counts, ratios, or named by another column
-  int decimals = 2;  ///< of its numbers in text; files have all digits
+  std::string name;    ///< "largest deviation"
+  std::string unit{};  ///< of its numbers, such as "um"; empty: texts, counts, ratios, or named by another column
+  int decimals = 2;    ///< of its numbers in text; files have all digits
 };
 
 /// A text, a number in the unit of its column, or nothing. A number that is not finite is nothing too.

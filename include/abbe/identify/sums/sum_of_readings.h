@@ -68,7 +68,7 @@ struct SumOptions {
 class PieceSummer {
  public:
   /// @param problem  its machine, structure of errors, and readings; the selection in it counts for nothing
-  explicit PieceSummer(Problem problem);
+  explicit PieceSummer(const Problem& problem);
   ~PieceSummer();
   PieceSummer(const PieceSummer&) = delete;
   PieceSummer& operator=(const PieceSummer&) = delete;

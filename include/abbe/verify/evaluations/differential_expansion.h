@@ -35,9 +35,9 @@ double nominal_differential_expansion(const DifferentialExpansion& expansion, do
                                       const BodyTemperatures& at);
 
 /// Deviations as they would be with both bodies at 20 degC. @param at  [readings]
-std::vector<PositioningReading> corrected_to_20_degC(const std::vector<PositioningReading>& readings,
-                                                     const DifferentialExpansion& expansion,
-                                                     const std::vector<BodyTemperatures>& at);
+std::vector<PositioningReading> corrected_to_20_degrees(const std::vector<PositioningReading>& readings,
+                                                        const DifferentialExpansion& expansion,
+                                                        const std::vector<BodyTemperatures>& at);
 
 /// Effect of one uncertain quantity on all readings together.
 struct ExpansionContribution {

@@ -36,7 +36,8 @@ class PlaceSums {
   SurfaceAverage average() const;
 
  private:
-  __extension__ typedef __int128 Wide;
+  // With `using`, compilers warn that there is no such type in the standard.
+  __extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
   struct Sum {
     Wide multiples = 0;
     std::uint32_t count = 0;

@@ -24,7 +24,7 @@ void expect(const std::string& what, std::size_t asked, std::size_t here) {
 
 }  // namespace
 
-PieceSummer::PieceSummer(Problem problem)
+PieceSummer::PieceSummer(const Problem& problem)
     : stated_(as_stated(problem)),
       selected_(stated_),
       weighed_(stated_.observations.size()),

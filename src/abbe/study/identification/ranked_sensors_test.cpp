@@ -68,7 +68,7 @@ coefficients_um = [0, 2]
 )";
 
 std::filesystem::path sensors_folder(const char* name) {
-  const std::filesystem::path folder = test::empty_folder(name);
+  std::filesystem::path folder = test::empty_folder(name);
   std::ofstream(folder / "table.machine.toml") << kFourSensors;
   std::ofstream(folder / "truth.errors.toml") << kTruthOfSensors;
   std::ofstream poses(folder / "poses.csv");

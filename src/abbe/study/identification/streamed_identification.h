@@ -31,7 +31,7 @@ bool is_streamed(const Campaign& campaign);
 ///
 /// Every sum is numbered work (IdentificationJob::work), which can be kept in a file and shared by processes.
 /// @throws InputError if a file of readings has changed meanwhile; Stopped
-void identify_streamed(const Study& study, const IdentifyOptions& options, const IdentificationJob& job,
+void identify_streamed(const Study& study, const IdentifyOptions& given, const IdentificationJob& job,
                        StudyResult& result);
 
 }  // namespace abbe

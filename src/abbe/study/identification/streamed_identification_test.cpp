@@ -40,7 +40,7 @@ class StreamedReadings : public testing::Test {
     study_.output = folder_ / "results";
     give({{"a.csv", repeated(7)}, {"b.csv", "# the second day\n" + repeated(9)}});
   }
-  ~StreamedReadings() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::string repeated(int times) const {
     std::string text = header_;
