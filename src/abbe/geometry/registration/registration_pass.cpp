@@ -39,7 +39,8 @@ void unpack_distances(std::span<const std::byte>& bytes, BlockDistances& distanc
   unpack_numbers(bytes, counts);
   distances.below = static_cast<std::size_t>(counts[0]);
   distances.all = static_cast<std::size_t>(counts[1]);
-  if (!(counts[2] >= 0 && counts[2] <= static_cast<double>(bytes.size() / sizeof(double)))) {
+  const std::size_t most = bytes.size() / sizeof(double);
+  if (!(counts[2] >= 0 && counts[2] <= static_cast<double>(most))) {
     throw WorkError("distances of a block are cut off");
   }
   distances.within.resize(static_cast<std::size_t>(counts[2]));

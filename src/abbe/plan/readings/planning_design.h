@@ -79,6 +79,7 @@ class PlanDesign {
   };
   /// The candidate whose adding lowers the objective most; the first of equal ones (tie()).
   ScoredCandidate best_to_add(const Allowed& rules);
+  static constexpr std::size_t kMostPlaces = 8;
   /// For each of some places, the candidate that lowers the objective most in the place of the chosen one, with the
   /// change by the whole exchange. One pass over the rows of the candidates serves all places.
   ///
@@ -87,9 +88,10 @@ class PlanDesign {
   ///     determinant   loss_j - gain_i - n log(1 + q / n),   n the smaller number of rows
   ///     variance      loss_j - (sqrt(gain_i) + sqrt(q loss_j))^2,   q = |W_ij|^2 / (1 - lambda_j), Frobenius norm
   /// (docs/planning.md), and q itself is at most lambda_j trace(W_i) / (1 - lambda_j), which needs no products at all.
+  /// Of those that are left, G_ij is computed only if a third bound, which does without it, allows it.
   /// Whatever cannot be equal to the best one that any thread has found so far is passed over too.
-  /// @param rules  [places] for each
-  static constexpr std::size_t kMostPlaces = 8;
+  /// @param places  kMostPlaces at most
+  /// @param rules   [places] for each
   std::vector<ScoredCandidate> best_instead(std::span<const std::size_t> places, std::span<const Allowed> rules);
 
  private:
@@ -122,7 +124,7 @@ class PlanDesign {
   /// Runs work(block) for all own blocks of candidates.
   template <typename Work>
   void for_own_blocks(const Work& work);
-  /// Of a chosen reading; every process finds the same, whoever keeps the candidate.
+  /// Of a chosen reading, from M^-1, which every process has.
   /// @param solved    M^-1 A_j', [v, rows]
   /// @param weighted  C times that; not used for a determinant
   void find_squares(std::size_t candidate, Eigen::Ref<const Eigen::MatrixXd> solved,

@@ -153,8 +153,8 @@ double PlanDesign::change_by_exchange_of_one(const Leaving& leaving, std::size_t
 }
 
 // Adding i, then taking out j: with W_ij = A_i M^-1 A_j' and K = (I + W_i)^-1 W_ij, W_j becomes W_j - W_ij' K, and
-// G_j becomes G_j - K' G_ij - G_ij' K + K' G_i K. Of the last, tr((I - W_j)^-1 G_j) is at least (a - b)^2 with
-// a^2 = tr((I - W_j)^-1 G_j) of the former G_j and b^2 = tr((I - W_j)^-1 K' G_i K), by the triangle inequality.
+// G_j becomes G_j - K' G_ij - G_ij' K + K' G_i K. With Q = I - W_j after that, tr(Q^-1 G_j) then is at least (a - b)^2,
+// a^2 = tr(Q^-1 G_j) with G_j before and b^2 = tr(Q^-1 K' G_i K), by the triangle inequality.
 double PlanDesign::change_by_exchange(const Leaving& leaving, std::size_t candidate, const double* x,
                                       double limit) const {
   const std::size_t n = space_.row_count(candidate), m = leaving.rows;
