@@ -34,10 +34,10 @@ struct BodyTemperatures {
 double nominal_differential_expansion(const DifferentialExpansion& expansion, double position,
                                       const BodyTemperatures& at);
 
-/// Deviations as they would be with both bodies at 20 degC. @param at  [readings]
-std::vector<PositioningReading> corrected_to_20_degrees(const std::vector<PositioningReading>& readings,
-                                                        const DifferentialExpansion& expansion,
-                                                        const std::vector<BodyTemperatures>& at);
+/// Deviations as they would be with both bodies at 20 degC (ISO 1). @param at  [readings]
+std::vector<PositioningReading> corrected_to_reference_temperature(const std::vector<PositioningReading>& readings,
+                                                                   const DifferentialExpansion& expansion,
+                                                                   const std::vector<BodyTemperatures>& at);
 
 /// Effect of one uncertain quantity on all readings together.
 struct ExpansionContribution {

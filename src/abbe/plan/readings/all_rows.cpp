@@ -8,6 +8,7 @@
 #include "abbe/geometry/digest.h"
 #include "abbe/geometry/numbered_work.h"
 #include "abbe/geometry/parallel_blocks.h"
+#include "abbe/plan/readings/padded_columns.h"
 #include "abbe/plan/readings/planning_shares.h"
 
 namespace abbe {
@@ -29,19 +30,6 @@ Eigen::MatrixXd factor_of_block(const PlanningCandidates::Rows& rows, Index firs
   }
   return stream.factor();
 }
-
-/// Columns of a matrix, padded for products.
-struct PaddedColumns {
-  explicit PaddedColumns(const Eigen::MatrixXd& matrix)
-      : count(padded(static_cast<std::size_t>(matrix.cols()), kColumnMultiple)),
-        length(padded(static_cast<std::size_t>(matrix.rows()), kLengthMultiple)),
-        numbers(count * length) {
-    for (Index j = 0; j < matrix.cols(); ++j)
-      std::copy_n(matrix.col(j).data(), matrix.rows(), &numbers[static_cast<std::size_t>(j) * length]);
-  }
-  std::size_t count, length;
-  std::vector<double> numbers;
-};
 
 /// Adds products of rows and columns; what is written behind the last row and behind the last column is 0.
 /// @param product  row by row, `stride` apart

@@ -207,19 +207,19 @@ class PlanSearch {
       const std::size_t exchanges_before = plan.exchanges;
       const double objective_before = design_.objective();
       order_by_loss(order);
-      std::size_t ahead = 1, known_from = 0;
+      std::size_t together = 1, known_from = 0;
       std::vector<ScoredCandidate> known;  // for the places of the order from there on
       for (std::size_t k = 0; k < order.size(); ++k) {
         if (k >= known_from + known.size()) {
           known_from = k;
-          known = best_instead(std::span(order).subspan(k, std::min(ahead, order.size() - k)));
+          known = best_instead(std::span(order).subspan(k, std::min(together, order.size() - k)));
         }
         if (exchange_one(order[k], known[k - known_from], plan)) {
-          ahead = 1;
+          together = 1;
           known.clear();
         } else {
           // The more places in a row bring nothing, the less is lost by looking at several together.
-          ahead = std::min(2 * ahead, PlanDesign::kMostPlaces);
+          together = std::min(2 * together, PlanDesign::kMostPlaces);
         }
         if (options_.progress)
           options_.progress((start_ + (pass + static_cast<double>(k + 1) / static_cast<double>(order.size())) /

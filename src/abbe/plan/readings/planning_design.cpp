@@ -6,6 +6,7 @@
 
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
+#include "abbe/plan/readings/padded_columns.h"
 #include "abbe/plan/readings/planning_small.h"
 
 namespace abbe {
@@ -58,7 +59,7 @@ PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functi
   if (by_variance_) solved_behind_.assign(solved_.size(), 0);
   pending_.reserve(2);
   x_stride_ = padded(kBlockRows + most, kColumnMultiple);
-  scratch_size_ = (std::max(columns, together) + padded(most, kColumnMultiple)) * x_stride_;
+  product_memory_size_ = (std::max(columns, together) + padded(most, kColumnMultiple)) * x_stride_;
   best_.resize(block_count() * kMostPlaces);
   if (static_cast<double>(space.first_row(n)) * static_cast<double>(v_) < kWorthDividing) {
     threads_ = 1;
@@ -96,22 +97,15 @@ bool PlanDesign::rebuild(const std::vector<std::size_t>& chosen, double ridge) {
 
 void PlanDesign::refresh_all() {
   const std::size_t stride = space_.stride();
-  const auto columns_of = [&](const Eigen::MatrixXd& matrix) {
-    std::vector<double> columns(stride * stride);
-    for (Index j = 0; j < matrix.cols(); ++j)
-      std::copy_n(matrix.col(j).data(), matrix.rows(), &columns[static_cast<std::size_t>(j) * stride]);
-    return columns;
-  };
-  const std::vector<double> inverse = columns_of(inverse_);
-  const std::vector<double> weight = by_variance_ ? columns_of(weight_) : std::vector<double>();
+  const PaddedColumns inverse(inverse_), weight(weight_);
   for_own_blocks([&](std::size_t block) {
     const std::size_t first = space_.first_row(blocks_[block]);
     const std::size_t rows = padded(space_.first_row(blocks_[block + 1]) - first, kColumnMultiple);
     // A M^-1 and A M^-1 C, row by row.
     thread_local std::vector<double> z, zc;
-    const auto multiply = [&](const double* a, const std::vector<double>& by, std::vector<double>& product) {
+    const auto multiply = [&](const double* a, const PaddedColumns& by, std::vector<double>& product) {
       product.assign(rows * stride, 0.0);
-      add_cross_products(by.data(), stride, stride, a, rows, stride, stride, product.data(), stride);
+      add_cross_products(by.numbers.data(), by.count, stride, a, rows, stride, stride, product.data(), stride);
     };
     multiply(space_.row(first), inverse, z);
     if (by_variance_) multiply(z.data(), weight, zc);
@@ -179,14 +173,14 @@ void PlanDesign::commit(double direction) {
   ++updates_;
 }
 
-double* PlanDesign::scratch() const {
+double* PlanDesign::product_memory() const {
   thread_local std::vector<double> numbers;
-  if (numbers.size() < scratch_size_) numbers.resize(scratch_size_);
+  if (numbers.size() < product_memory_size_) numbers.resize(product_memory_size_);
   return numbers.data();
 }
 
 double* PlanDesign::products(std::size_t block, const double* factors, std::size_t columns) const {
-  double* x = scratch();
+  double* x = product_memory();
   const std::size_t first = space_.first_row(blocks_[block]);
   const std::size_t rows = padded(space_.first_row(blocks_[block + 1]) - first, kColumnMultiple);
   std::fill(x, x + columns * x_stride_, 0.0);
@@ -318,39 +312,15 @@ ScoredCandidate PlanDesign::best_to_add(const Allowed& rules) {
   return best_of_blocks(1).front();
 }
 
-void PlanDesign::find_squares(std::size_t candidate, Eigen::Ref<const Eigen::MatrixXd> solved,
-                              Eigen::Ref<const Eigen::MatrixXd> weighted, Squares& squares) const {
-  const Index v = static_cast<Index>(v_), n = static_cast<Index>(space_.row_count(candidate));
-  const RowsMap a(space_.row(space_.first_row(candidate)), n, v,
-                  Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
-  const auto fill = [n](const auto& value, Small& to) {
-    for (Index i = 0; i < n; ++i)
-      for (Index j = 0; j <= i; ++j)
-        to[static_cast<std::size_t>(i * n + j)] = to[static_cast<std::size_t>(j * n + i)] = value(i, j);
-  };
-  fill([&](Index i, Index j) { return a.row(i).dot(solved.col(j)); }, squares.w);
-  if (by_variance_) fill([&](Index i, Index j) { return solved.col(i).dot(weighted.col(j)); }, squares.g);
-}
-
-double PlanDesign::loss_of(const Squares& squares, std::size_t n) const {
-  Small lower;
-  if (!factorise(squares.w.data(), n, -1, lower)) return kImpossible;
-  return by_variance_ ? trace_of_quotient(lower, squares.g.data(), n) : -log_determinant(lower, n);
-}
-
-std::vector<double> PlanDesign::losses() const {
-  std::vector<double> result;
-  Squares squares;
-  Eigen::MatrixXd solved, weighted;
-  for (const std::size_t candidate : chosen_) {
-    const RowsMap a(space_.row(space_.first_row(candidate)), static_cast<Index>(space_.row_count(candidate)),
-                    static_cast<Index>(v_), Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
-    solved.noalias() = inverse_ * a.transpose();
-    if (by_variance_) weighted.noalias() = weight_ * solved;
-    find_squares(candidate, solved, weighted, squares);
-    result.push_back(loss_of(squares, space_.row_count(candidate)));
-  }
-  return result;
+std::vector<ScoredCandidate> PlanDesign::best_of_blocks(std::size_t places) const {
+  std::vector<PossibleBests> lists(places);
+  for (std::size_t k = 0; k < shares_.own_count(); ++k)
+    for (std::size_t place = 0; place < places; ++place)
+      lists[place].append(best_[shares_.own(k) * kMostPlaces + place]);
+  if (shares_.any()) lists = lists_of(shares_.merged(bytes_of(lists), merge_possible_bests));
+  std::vector<ScoredCandidate> best;
+  for (const PossibleBests& list : lists) best.push_back(list.best());
+  return best;
 }
 
 }  // namespace abbe

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to identify: a choice of readings that can be changed one reading at a time.
+// Internal to plan: a choice of readings that can be changed one reading at a time.
 #include <Eigen/Core>
 #include <array>
 #include <atomic>
@@ -133,12 +133,12 @@ class PlanDesign {
   bool make_update(std::size_t candidate, double sign);
   void commit(double direction);
   void pass();
-  /// Numbers of this thread: products of a block, and behind them those of one candidate.
-  double* scratch() const;
-  /// A_i times columns, in the numbers of this thread.
+  /// Of this thread: products of a block, and behind them those of one candidate.
+  double* product_memory() const;
+  /// A_i times columns, in the memory of this thread.
   /// @param factors  columns, each [stride]
   double* products(std::size_t block, const double* factors, std::size_t columns) const;
-  /// G_ij of a candidate and a leaving reading, in the numbers of this thread.
+  /// G_ij of a candidate and a leaving reading, in the memory of this thread.
   const double* mixed_products(std::size_t candidate, const Leaving& leaving) const;
   void measure(std::size_t candidate);
   void prepare(std::size_t place, const Allowed& rules, Leaving& leaving);
@@ -188,7 +188,7 @@ class PlanDesign {
   std::vector<double> solved_behind_;  // M^-1 C M^-1 A_j'
   std::vector<double> factors_;        // columns, each [stride]
   std::vector<Update> pending_;        // at most two
-  std::size_t scratch_size_ = 0;
+  std::size_t product_memory_size_ = 0;
   std::size_t x_stride_ = 0;
   std::vector<PossibleBests> best_;  // [blocks][kMostPlaces]
 };

@@ -62,6 +62,41 @@ void PlanDesign::prepare(std::size_t place, const Allowed& rules, Leaving& leavi
   leaving.size = std::max(largest, 0.0) * leaving.stretch;
 }
 
+void PlanDesign::find_squares(std::size_t candidate, Eigen::Ref<const Eigen::MatrixXd> solved,
+                              Eigen::Ref<const Eigen::MatrixXd> weighted, Squares& squares) const {
+  const Index v = static_cast<Index>(v_), n = static_cast<Index>(space_.row_count(candidate));
+  const RowsMap a(space_.row(space_.first_row(candidate)), n, v,
+                  Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
+  const auto fill = [n](const auto& value, Small& to) {
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j <= i; ++j)
+        to[static_cast<std::size_t>(i * n + j)] = to[static_cast<std::size_t>(j * n + i)] = value(i, j);
+  };
+  fill([&](Index i, Index j) { return a.row(i).dot(solved.col(j)); }, squares.w);
+  if (by_variance_) fill([&](Index i, Index j) { return solved.col(i).dot(weighted.col(j)); }, squares.g);
+}
+
+double PlanDesign::loss_of(const Squares& squares, std::size_t n) const {
+  Small lower;
+  if (!factorise(squares.w.data(), n, -1, lower)) return kImpossible;
+  return by_variance_ ? trace_of_quotient(lower, squares.g.data(), n) : -log_determinant(lower, n);
+}
+
+std::vector<double> PlanDesign::losses() const {
+  std::vector<double> result;
+  Squares squares;
+  Eigen::MatrixXd solved, weighted;
+  for (const std::size_t candidate : chosen_) {
+    const RowsMap a(space_.row(space_.first_row(candidate)), static_cast<Index>(space_.row_count(candidate)),
+                    static_cast<Index>(v_), Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
+    solved.noalias() = inverse_ * a.transpose();
+    if (by_variance_) weighted.noalias() = weight_ * solved;
+    find_squares(candidate, solved, weighted, squares);
+    result.push_back(loss_of(squares, space_.row_count(candidate)));
+  }
+  return result;
+}
+
 bool PlanDesign::may_be_better(std::size_t candidate, const Leaving& leaving, double square, double limit) const {
   if (!leaving.bounded) return true;
   const double gain = -gain_[candidate];
@@ -123,7 +158,7 @@ const double* PlanDesign::mixed_products(std::size_t candidate, const Leaving& l
   const std::size_t rows = space_.row_count(candidate), stride = space_.stride();
   const double* const a = space_.row(space_.first_row(candidate));
   const double* const b = &solved_behind_[leaving.column * stride];
-  double* x = scratch() + leaving_columns_ * x_stride_;
+  double* x = product_memory() + leaving_columns_ * x_stride_;
   if (rows * leaving.rows < kFew) {
     const auto length = static_cast<Index>(stride);
     for (std::size_t c = 0; c < leaving.rows; ++c)

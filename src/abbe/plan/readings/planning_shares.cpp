@@ -8,8 +8,7 @@
 #include "abbe/geometry/digest.h"
 #include "abbe/geometry/numbered_work.h"
 #include "abbe/plan/readings/planning.h"
-#include "abbe/plan/readings/planning_best.h"
-#include "abbe/plan/readings/planning_design.h"
+#include "abbe/plan/readings/planning_space.h"
 
 namespace abbe {
 namespace {
@@ -90,17 +89,6 @@ void PlanShares::complete(std::span<const Piece> pieces) const {
   GatheredBytes all = gather(in_step_, fingerprint_, own);
   for (const Piece& piece : pieces)
     if (piece.owner != in_step_.rank) unpack_numbers(all.parts.at(piece.owner), piece.numbers);
-}
-
-std::vector<ScoredCandidate> PlanDesign::best_of_blocks(std::size_t places) const {
-  std::vector<PossibleBests> lists(places);
-  for (std::size_t k = 0; k < shares_.own_count(); ++k)
-    for (std::size_t place = 0; place < places; ++place)
-      lists[place].append(best_[shares_.own(k) * kMostPlaces + place]);
-  if (shares_.any()) lists = lists_of(shares_.merged(bytes_of(lists), merge_possible_bests));
-  std::vector<ScoredCandidate> best;
-  for (const PossibleBests& list : lists) best.push_back(list.best());
-  return best;
 }
 
 }  // namespace abbe

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to identify: matrices of the few rows of one candidate.
+// Internal to plan: matrices of the few rows of one candidate.
 #include <array>
 #include <cmath>
 #include <cstddef>

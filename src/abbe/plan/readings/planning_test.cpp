@@ -122,15 +122,21 @@ ScoredCandidate best_instead(PlanDesign& design, std::size_t place) {
   return design.best_instead({&place, 1}, {&rules, 1}).front();
 }
 
-class UpdatedDesign : public ::testing::TestWithParam<bool> {};
+struct DesignCase {
+  bool variance;
+  std::size_t rows;  // of a candidate
+};
+
+class UpdatedDesign : public ::testing::TestWithParam<DesignCase> {};
 
 TEST_P(UpdatedDesign, EqualsOneFactorisedAnew) {
-  const PlanningCandidates candidates = random_candidates(200, 3, 20, 3);
+  const PlanningCandidates candidates = random_candidates(200, GetParam().rows, 20, 3);
   const PlanningSpace space(candidates, random_matrix(4, 20, 9));
-  const Eigen::MatrixXd functionals = GetParam() ? space.functionals(random_matrix(30, 20, 5)) : Eigen::MatrixXd();
+  const Eigen::MatrixXd functionals =
+      GetParam().variance ? space.functionals(random_matrix(30, 20, 5)) : Eigen::MatrixXd();
   PlanDesign updated(space, functionals, 2);
   std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < 15; ++i) chosen.push_back(i);
+  for (std::size_t i = 0; i < 45 / GetParam().rows; ++i) chosen.push_back(i);
   ASSERT_TRUE(updated.rebuild(chosen, 0));
   RandomStream random(1);
   for (int step = 0; step < 100; ++step) {
@@ -163,12 +169,14 @@ TEST_P(UpdatedDesign, EqualsOneFactorisedAnew) {
 }
 
 TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
-  const PlanningCandidates candidates = random_candidates(250, 3, 20, 4);
+  const PlanningCandidates candidates = random_candidates(250, GetParam().rows, 20, 4);
   const PlanningSpace space(candidates, Eigen::MatrixXd());
-  const Eigen::MatrixXd functionals = GetParam() ? space.functionals(random_matrix(30, 20, 5)) : Eigen::MatrixXd();
+  const Eigen::MatrixXd functionals =
+      GetParam().variance ? space.functionals(random_matrix(30, 20, 5)) : Eigen::MatrixXd();
   PlanDesign design(space, functionals, 2);
   std::vector<std::size_t> chosen, places;
-  for (std::size_t i = 0; i < 12; ++i) chosen.push_back(i);
+  const std::size_t readings = 36 / GetParam().rows;
+  for (std::size_t i = 0; i < readings; ++i) chosen.push_back(i);
   for (std::size_t i = 0; i < PlanDesign::kMostPlaces; ++i) places.push_back(i);
   ASSERT_TRUE(design.rebuild(chosen, 0));
   const std::vector<PlanDesign::Allowed> rules(places.size());
@@ -179,7 +187,7 @@ TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
     EXPECT_EQ(together[place].change, best.change);
     // Every exchange by itself.
     double least = 1e300;
-    for (std::size_t i = 12; i < 250; i += place == 0 ? 1 : 23) {
+    for (std::size_t i = readings; i < 250; i += place == 0 ? 1 : 23) {
       PlanDesign other(space, functionals, 1);
       std::vector<std::size_t> exchanged = chosen;
       exchanged[place] = i;
@@ -189,7 +197,9 @@ TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ByCriterion, UpdatedDesign, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(ByCriterion, UpdatedDesign,
+                         ::testing::Values(DesignCase{false, 3}, DesignCase{true, 3}, DesignCase{false, 1},
+                                           DesignCase{true, 1}, DesignCase{true, 2}));
 
 TEST(PlanningTest, ManyCandidatesMeasuredOnceHaveTheUnitMatrixAsInformation) {
   // More rows than one block of the factorisation has, and not a multiple of anything.

@@ -167,7 +167,7 @@ std::optional<CorrectedPositioning> corrected_positioning(const PositioningTest&
     }
   }
   CorrectedPositioning result;
-  result.readings = corrected_to_20_degrees(readings.readings, stated->expansion, at);
+  result.readings = corrected_to_reference_temperature(readings.readings, stated->expansion, at);
   result.correction = correction_of(test, *stated, at, result.readings);
   return result;
 }

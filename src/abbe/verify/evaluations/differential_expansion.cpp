@@ -51,9 +51,9 @@ double nominal_differential_expansion(const DifferentialExpansion& expansion, do
          instrument.coefficient * (at.instrument - kReferenceTemperature) * (position - instrument.fixed_point);
 }
 
-std::vector<PositioningReading> corrected_to_20_degrees(const std::vector<PositioningReading>& readings,
-                                                        const DifferentialExpansion& expansion,
-                                                        const std::vector<BodyTemperatures>& at) {
+std::vector<PositioningReading> corrected_to_reference_temperature(const std::vector<PositioningReading>& readings,
+                                                                   const DifferentialExpansion& expansion,
+                                                                   const std::vector<BodyTemperatures>& at) {
   std::vector<PositioningReading> result = readings;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     result[i].deviation -= nominal_differential_expansion(expansion, readings[i].target, at[i]);

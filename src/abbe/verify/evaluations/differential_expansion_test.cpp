@@ -63,7 +63,8 @@ TEST(DifferentialExpansion, CorrectedDeviationsAreThoseOfTheAxisAt20Degrees) {
     const WarmTest warm = read_warm(bowed, expansion, 3, drift);
     DifferentialExpansion none;
     const WarmTest cold = read_warm(bowed, none, 3, drift);
-    const std::vector<PositioningReading> corrected = corrected_to_20_degrees(warm.readings, expansion, warm.at);
+    const std::vector<PositioningReading> corrected =
+        corrected_to_reference_temperature(warm.readings, expansion, warm.at);
     double largest = 0;
     for (std::size_t i = 0; i < corrected.size(); ++i) {
       // Second order: the strain of the strain, and of the deviation, below a nanometre.
@@ -122,7 +123,7 @@ ManyTests many_tests(const AxisDeviation& axis, const DifferentialExpansion& sta
       one.instrument += of_instrument;
     }
     const auto found =
-        positioning_figures(evaluate_positioning(corrected_to_20_degrees(warm.readings, stated, warm.at)));
+        positioning_figures(evaluate_positioning(corrected_to_reference_temperature(warm.readings, stated, warm.at)));
     for (std::size_t f = 0; f < found.size(); ++f) {
       sum[f] += found[f].value / kDraws;
       squares[f] += found[f].value * found[f].value / kDraws;
@@ -138,7 +139,7 @@ ManyTests many_tests(const AxisDeviation& axis, const DifferentialExpansion& sta
 std::array<double, kPositioningFigures> stated_uncertainty(const AxisDeviation& axis,
                                                            const DifferentialExpansion& expansion, double drift) {
   const WarmTest warm = read_warm(axis, expansion, 5, drift);
-  return expanded_by_expansion(corrected_to_20_degrees(warm.readings, expansion, warm.at),
+  return expanded_by_expansion(corrected_to_reference_temperature(warm.readings, expansion, warm.at),
                                expansion_contributions(warm.readings, expansion, warm.at));
 }
 
