@@ -123,17 +123,21 @@ ScoredCandidate best_instead(PlanDesign& design, std::size_t place) {
 }
 
 struct DesignCase {
-  bool variance;
-  std::size_t rows;  // of a candidate
+  std::size_t rows, functionals;  // rows of a candidate; without functionals: the determinant
 };
 
-class UpdatedDesign : public ::testing::TestWithParam<DesignCase> {};
+class UpdatedDesign : public ::testing::TestWithParam<DesignCase> {
+ protected:
+  static Eigen::MatrixXd functionals_of(const PlanningSpace& space) {
+    const auto count = static_cast<Index>(GetParam().functionals);
+    return count > 0 ? space.functionals(random_matrix(count, 20, 5)) : Eigen::MatrixXd();
+  }
+};
 
 TEST_P(UpdatedDesign, EqualsOneFactorisedAnew) {
   const PlanningCandidates candidates = random_candidates(200, GetParam().rows, 20, 3);
   const PlanningSpace space(candidates, random_matrix(4, 20, 9));
-  const Eigen::MatrixXd functionals =
-      GetParam().variance ? space.functionals(random_matrix(30, 20, 5)) : Eigen::MatrixXd();
+  const Eigen::MatrixXd functionals = functionals_of(space);
   PlanDesign updated(space, functionals, 2);
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < 45 / GetParam().rows; ++i) chosen.push_back(i);
@@ -171,8 +175,7 @@ TEST_P(UpdatedDesign, EqualsOneFactorisedAnew) {
 TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
   const PlanningCandidates candidates = random_candidates(250, GetParam().rows, 20, 4);
   const PlanningSpace space(candidates, Eigen::MatrixXd());
-  const Eigen::MatrixXd functionals =
-      GetParam().variance ? space.functionals(random_matrix(30, 20, 5)) : Eigen::MatrixXd();
+  const Eigen::MatrixXd functionals = functionals_of(space);
   PlanDesign design(space, functionals, 2);
   std::vector<std::size_t> chosen, places;
   const std::size_t readings = 36 / GetParam().rows;
@@ -198,8 +201,8 @@ TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ByCriterion, UpdatedDesign,
-                         ::testing::Values(DesignCase{false, 3}, DesignCase{true, 3}, DesignCase{false, 1},
-                                           DesignCase{true, 1}, DesignCase{true, 2}));
+                         ::testing::Values(DesignCase{3, 0}, DesignCase{3, 30}, DesignCase{1, 0}, DesignCase{1, 30},
+                                           DesignCase{2, 30}));
 
 TEST(PlanningTest, ManyCandidatesMeasuredOnceHaveTheUnitMatrixAsInformation) {
   // More rows than one block of the factorisation has, and not a multiple of anything.
