@@ -9,7 +9,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Readings of one set of observations, and the first of their rows.
+/// Some readings of one set of observations, and where their rows begin.
 struct Block {
   const SelectedObservations* selected = nullptr;
   std::size_t first = 0, count = 0;
@@ -21,7 +21,7 @@ bool is_used(const SelectedObservations& selected, std::size_t reading) {
   return selected.use.empty() || selected.use[reading] != 0;
 }
 
-/// Blocks of all readings; says where the rows of each candidate begin.
+/// Divides all readings into blocks. @param first_row  is filled as PlanningCandidates::first_row
 std::vector<Block> blocks_of(const Problem& problem, std::vector<std::size_t>& first_row) {
   std::vector<Block> blocks;
   std::size_t first_unknown = problem.machine_parameters.size();

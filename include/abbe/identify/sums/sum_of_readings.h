@@ -133,7 +133,7 @@ class Summation {
       std::function<std::vector<std::uint64_t>(const ReadingPoint& reference, const std::stop_token& stop)>;
 
   Summation() = default;
-  // NOLINTBEGIN(google-explicit-constructor): a function is given where a summation is asked for
+  // NOLINTBEGIN(google-explicit-constructor): callers pass a function as a summation
   /// @param fingerprints  empty: the sums are checked with fingerprints that take a pass over all readings
   template <class Callable>
   requires std::is_constructible_v<Sum, Callable> Summation(Callable sum, Fingerprints fingerprints = {})

@@ -73,7 +73,7 @@ class PlanningModel {
   Candidates readings_at(const PoseList& poses, const std::vector<std::size_t>& sight = {}) const;
   /// The same at several conditions.
   Candidates readings_at(const std::vector<PosesAt>& tried, const std::vector<std::size_t>& sight = {}) const;
-  /// The same without rows.
+  /// The same without computing rows.
   Candidates seen_at(const std::vector<PosesAt>& tried, const std::vector<std::size_t>& sight = {}) const;
   /// Rows of readings that were candidates, at states of their own, in the order of the set-ups.
   ///

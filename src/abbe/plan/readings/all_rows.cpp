@@ -15,12 +15,12 @@ namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
-// Of rows; fixed, because sums are rounded by blocks.
+// Number of rows. It is fixed because the rounding of sums depends on it.
 constexpr Index kBlock = 8192;
 
 Index block_count(Index rows) { return (rows + kBlock - 1) / kBlock; }
 
-/// Rows of one block with the columns scaled.
+/// Factor R of the rows of one block, each column times its scale.
 Eigen::MatrixXd factor_of_block(const PlanningCandidates::Rows& rows, Index first, Index end,
                                 const Eigen::RowVectorXd& scale) {
   StreamingFactor stream(rows.cols());
@@ -31,7 +31,8 @@ Eigen::MatrixXd factor_of_block(const PlanningCandidates::Rows& rows, Index firs
   return stream.factor();
 }
 
-/// Adds products of rows and columns; what is written behind the last row and behind the last column is 0.
+/// Adds the products of rows and columns. Zeros are added behind the last row and the last column, up to the next
+/// multiple (cross_products.h).
 /// @param product  row by row, `stride` apart
 void add_products(const Eigen::Ref<const PlanningCandidates::Rows>& rows, const PaddedColumns& columns, int threads,
                   double* product, std::size_t stride) {
@@ -112,7 +113,7 @@ std::vector<double> multiply_rows(const PlanningCandidates::Rows& rows, const Ei
   constexpr Index kMostRows = Index{1} << 16;
   constexpr double kWorthSharing = 1e7;  // sums of products
   const PaddedColumns columns(factor);
-  const std::size_t used = columns.count;  // of the stride
+  const std::size_t used = columns.count;  // numbers of each row that are not padding of the stride
   const auto all_rows = static_cast<std::size_t>(rows.rows());
   std::vector<double> product((all_rows + kColumnMultiple) * stride);
   if (rows.cols() == 0 || factor.cols() == 0) return product;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to plan: what is computed once from the rows of all candidates, in blocks of these, by threads and
+// Internal to plan: sums, factor and products of the rows of all candidates, computed in blocks by threads and
 // processes.
 #include <Eigen/Core>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace abbe {
 
-/// Factor R of rows that come one after the other; the rows themselves are not kept.
+/// Factor R of rows that are added one by one and not kept.
 class StreamingFactor {
  public:
   explicit StreamingFactor(Eigen::Index columns)
@@ -43,13 +43,14 @@ class StreamingFactor {
   Eigen::MatrixXd work_;
 };
 
-/// Who computes. No bit of the results depends on it.
+/// The processes and threads that share the work. The results have the same bytes for any number of them.
 struct SharedRows {
   const WorkInStep& in_step;
   int threads;  ///< of this process, as for_each_block()
 };
 
-/// [columns] sums of squares. Every process computes all of them: they tell other candidates apart.
+/// Sums of squares, [columns]. Every process computes them from all rows: they become part of the fingerprint that
+/// tells other candidates apart.
 Eigen::VectorXd squares_of_columns(const PlanningCandidates::Rows& rows, int threads);
 
 /// Factor R of the known rows and all others, each column times its scale, [columns, columns].

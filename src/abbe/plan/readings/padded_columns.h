@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to plan: columns of a matrix as products take them.
+// Internal to plan: a matrix in the form that add_cross_products() takes.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace abbe {
 
-/// Columns of a matrix with zeros behind each and behind the last one, for add_cross_products().
+/// The columns of a matrix, each padded with zeros, and columns of zeros behind the last one.
 struct PaddedColumns {
   explicit PaddedColumns(const Eigen::MatrixXd& matrix)
       : count(padded(static_cast<std::size_t>(matrix.cols()), kColumnMultiple)),

@@ -208,7 +208,7 @@ class PlanSearch {
       const double objective_before = design_.objective();
       order_by_loss(order);
       std::size_t together = 1, known_from = 0;
-      std::vector<ScoredCandidate> known;  // for the places of the order from there on
+      std::vector<ScoredCandidate> known;  // best exchange for each place of the order, from known_from on
       for (std::size_t k = 0; k < order.size(); ++k) {
         if (k >= known_from + known.size()) {
           known_from = k;
@@ -218,7 +218,8 @@ class PlanSearch {
           together = 1;
           known.clear();
         } else {
-          // The more places in a row bring nothing, the less is lost by looking at several together.
+          // Places looked at together are looked at in vain once one of them is exchanged. The more places in a row
+          // bring nothing, the less likely that is.
           together = std::min(2 * together, PlanDesign::kMostPlaces);
         }
         if (options_.progress)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to plan: the best of many candidates, from lists of those that may be, which several processes have.
+// Internal to plan: finds the best of many candidates from short lists, one for each block or process.
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -15,26 +15,26 @@ struct ScoredCandidate {
   std::size_t candidate = static_cast<std::size_t>(-1);  ///< this one: none
   double change = kImpossible;                           ///< of the objective
   double score = kImpossible;                            ///< change, divided by the cost where that counts
-  double tie = 0;  ///< equal to the best one if the score is higher than its score by no more
+  double tie = 0;  ///< a candidate whose score is higher than the lowest one by no more than this equals the best one
 };
 
-/// Of candidates in their order, those that may be the best of all.
+/// The candidates that may be the best of all, in their order.
 ///
-/// Candidates whose score is at most a tie above the lowest one are equal, and the first of these is the best. So a
-/// candidate is left out if its score less its tie is above a score that is known, or not below that of an earlier
-/// one. What is left of several lists together does not depend on the order in which they are joined, and a candidate
-/// that is not equal to the best one may be left out or not. These lists are short.
+/// Candidates whose score is at most a tie above the lowest one are equal, and the first of them is the best. So a
+/// candidate is dropped if its score less its tie is above a known score, or is not below that of an earlier
+/// candidate. Few are left. Lists can be joined in any order with the same result. It does not matter whether
+/// candidates that are not equal to the best one were added at all.
 class PossibleBests {
  public:
   /// @param one  a candidate after all those before; one without a finite score is left out
   void add(const ScoredCandidate& one);
   /// @param following  candidates after all those of this list
   void append(const PossibleBests& following);
-  /// Of other candidates, between those of this list.
+  /// @param others  other candidates, which may lie between those of this list
   void merge(const PossibleBests& others);
   void clear();
 
-  /// Without a candidate if there is none.
+  /// The best candidate, or none.
   ScoredCandidate best() const { return list_.empty() ? ScoredCandidate() : list_.front(); }
   /// The lowest score.
   double least() const { return least_; }
@@ -42,7 +42,7 @@ class PossibleBests {
 
   /// Appends the list to bytes.
   void pack(std::vector<std::byte>& bytes) const;
-  /// Takes a list off the front of bytes. @throws WorkError if there is none
+  /// Takes a list off the front of the bytes. @throws WorkError if there is no whole list
   static PossibleBests unpack(std::span<const std::byte>& bytes);
 
  private:
@@ -53,7 +53,7 @@ class PossibleBests {
 };
 
 std::vector<std::byte> bytes_of(std::span<const PossibleBests> lists);
-/// @throws WorkError if the bytes are no lists
+/// @throws WorkError if the last list is cut off
 std::vector<PossibleBests> lists_of(std::span<const std::byte> bytes);
 
 /// Merges the first list with the first one that follows, and so on; as bytes (WorkInStep::Merge).

@@ -12,7 +12,7 @@ namespace abbe {
 namespace {
 
 /// Candidates, many of which are equal but for ties or for rounding, impossible, or no number.
-std::vector<ScoredCandidate> random_candidates(RandomStream& random, bool one_tie) {
+std::vector<ScoredCandidate> random_scores(RandomStream& random, bool one_tie) {
   std::vector<ScoredCandidate> all(random.bits() % 200);
   const double tie = random.bits() % 8 == 0 ? 0 : 1e-8, level = -3 * random.uniform();
   double trend = 0;
@@ -70,7 +70,7 @@ TEST(PossibleBestsTest, ContainTheBestOfAll) {
   RandomStream random(12);
   std::size_t most = 0;
   for (int round = 0; round < 20000; ++round) {
-    const std::vector<ScoredCandidate> all = random_candidates(random, round % 2 == 0);
+    const std::vector<ScoredCandidate> all = random_scores(random, round % 2 == 0);
     const PossibleBests possible = possible_of(all);
     ASSERT_TRUE(is_same(possible.best(), best_of(all))) << round;
     most = std::max(most, possible.list().size());
@@ -81,7 +81,7 @@ TEST(PossibleBestsTest, ContainTheBestOfAll) {
 TEST(PossibleBestsTest, AreTheSameBytesForAnyNumberOfProcessesAndAnyTree) {
   RandomStream random(11);
   for (int round = 0; round < 20000; ++round) {
-    const std::vector<ScoredCandidate> all = random_candidates(random, round % 2 == 0);
+    const std::vector<ScoredCandidate> all = random_scores(random, round % 2 == 0);
     const std::vector<std::byte> expected = bytes_of_one(possible_of(all));
     const std::size_t processes = 1 + random.bits() % 12;
     std::vector<std::vector<ScoredCandidate>> own(processes);
@@ -97,7 +97,7 @@ TEST(PossibleBestsTest, AreTheSameBytesForAnyNumberOfProcessesAndAnyTree) {
 TEST(PossibleBestsTest, LoseNothingIfThoseAreLeftOutThatAreNotEqualToTheBest) {
   RandomStream random(14);
   for (int round = 0; round < 20000; ++round) {
-    std::vector<ScoredCandidate> all = random_candidates(random, round % 2 == 0);
+    std::vector<ScoredCandidate> all = random_scores(random, round % 2 == 0);
     const ScoredCandidate expected = best_of(all);
     double least = ScoredCandidate::kImpossible;
     for (const ScoredCandidate& one : all)
@@ -124,7 +124,7 @@ TEST(PossibleBestsTest, AreFew) {
 TEST(PossibleBestsTest, OfTwoPartsAreThoseOfTheWhole) {
   RandomStream random(15);
   for (int round = 0; round < 5000; ++round) {
-    const std::vector<ScoredCandidate> all = random_candidates(random, round % 2 == 0);
+    const std::vector<ScoredCandidate> all = random_scores(random, round % 2 == 0);
     const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.empty() ? 0 : random.bits() % all.size());
     PossibleBests parts = possible_of({all.begin(), middle});
     parts.append(possible_of({middle, all.end()}));
@@ -136,7 +136,7 @@ TEST(PossibleBestsTest, OfSeveralPlacesAreMergedPlaceByPlace) {
   RandomStream random(16);
   std::vector<PossibleBests> first, second, expected;
   for (int place = 0; place < 5; ++place) {
-    const std::vector<ScoredCandidate> all = random_candidates(random, true);
+    const std::vector<ScoredCandidate> all = random_scores(random, true);
     std::vector<ScoredCandidate> parts[2];
     for (const ScoredCandidate& one : all) parts[random.bits() % 2].push_back(one);
     first.push_back(possible_of(parts[0]));

@@ -88,10 +88,10 @@ class PlanDesign {
   ///     determinant   loss_j - gain_i - n log(1 + q / n),   n the smaller number of rows
   ///     variance      loss_j - (sqrt(gain_i) + sqrt(q loss_j))^2,   q = |W_ij|^2 / (1 - lambda_j), Frobenius norm
   /// (docs/planning.md), and q itself is at most lambda_j trace(W_i) / (1 - lambda_j), which needs no products at all.
-  /// Of those that are left, G_ij is computed only if a third bound, which does without it, allows it.
-  /// Whatever cannot be equal to the best one that any thread has found so far is passed over too.
-  /// @param places  kMostPlaces at most
-  /// @param rules   [places] for each
+  /// A third bound then decides whether G_ij has to be computed. Candidates that cannot equal the best one found by any
+  /// thread so far are passed over too.
+  /// @param places  indices into chosen(), at most kMostPlaces
+  /// @param rules   [places]
   std::vector<ScoredCandidate> best_instead(std::span<const std::size_t> places, std::span<const Allowed> rules);
 
  private:
@@ -118,13 +118,13 @@ class PlanDesign {
     double size = 0;     // lambda_j / (1 - lambda_j)
     bool bounded = false;
     Squares squares{};
-    std::atomic<double> least = kImpossible;  // change that is known to be possible
+    std::atomic<double> least = kImpossible;  // lowest change found so far, by any thread
   };
 
   /// Runs work(block) for all own blocks of candidates.
   template <typename Work>
   void for_own_blocks(const Work& work);
-  /// Of a chosen reading, from M^-1, which every process has.
+  /// W_j and G_j of a chosen reading, from M^-1, so that no process has to ask another one.
   /// @param solved    M^-1 A_j', [v, rows]
   /// @param weighted  C times that; not used for a determinant
   void find_squares(std::size_t candidate, Eigen::Ref<const Eigen::MatrixXd> solved,
@@ -133,7 +133,7 @@ class PlanDesign {
   bool make_update(std::size_t candidate, double sign);
   void commit(double direction);
   void pass();
-  /// Of this thread: products of a block, and behind them those of one candidate.
+  /// Memory of this thread for the products of a block, and behind them those of one candidate.
   double* product_memory() const;
   /// A_i times columns, in the memory of this thread.
   /// @param factors  columns, each [stride]
@@ -142,22 +142,22 @@ class PlanDesign {
   const double* mixed_products(std::size_t candidate, const Leaving& leaving) const;
   void measure(std::size_t candidate);
   void prepare(std::size_t place, const Allowed& rules, Leaving& leaving);
-  /// Lists of a block, for each place.
+  /// Fills the lists of a block, one for each place.
   void best_in_block(std::size_t block, std::span<const Allowed> rules);
   void best_in_block(std::size_t block, const double* x, Leaving& leaving, const Allowed& rules, PossibleBests& best);
-  /// Above this, a change is not equal to the best one.
+  /// A change above this cannot equal the best one.
   double limit_of(const Leaving& leaving, const Allowed& rules) const;
   bool may_be_better(std::size_t candidate, const Leaving& leaving, double square, double limit) const;
   void change_squares(const Update& update, const double* x, std::size_t n, double* w, double* g) const;
   void refresh_all();
   /// @param x      W_ij, columns x_stride_ apart
-  /// @param limit  changes that are not below it need not be known; kImpossible stands for them
+  /// @param limit  where the change is not below this, the result may be kImpossible
   double change_by_exchange(const Leaving& leaving, std::size_t candidate, const double* x, double limit) const;
   double change_by_exchange_of_one(const Leaving& leaving, std::size_t candidate, double x, double limit) const;
   double change_by_adding(const double* w, const double* g, std::size_t n) const;
   bool allowed(std::size_t candidate, const Allowed& rules) const;
   ScoredCandidate scored(std::size_t candidate, double change, const Allowed& rules) const;
-  /// For each of so many places, from their lists of all blocks.
+  /// The best candidate for each of the first places, from the lists of all blocks and processes.
   std::vector<ScoredCandidate> best_of_blocks(std::size_t places) const;
   std::size_t block_count() const { return blocks_.size() - 1; }
 

@@ -154,7 +154,7 @@ void PlanDesign::best_in_block(std::size_t block, const double* x, Leaving& leav
 }
 
 const double* PlanDesign::mixed_products(std::size_t candidate, const Leaving& leaving) const {
-  constexpr std::size_t kFew = 8;  // the product of many wants rows and columns in fours
+  constexpr std::size_t kFew = 8;  // fewer are computed one by one, without padding to multiples of four
   const std::size_t rows = space_.row_count(candidate), stride = space_.stride();
   const double* const a = space_.row(space_.first_row(candidate));
   const double* const b = &solved_behind_[leaving.column * stride];
@@ -173,7 +173,7 @@ const double* PlanDesign::mixed_products(std::size_t candidate, const Leaving& l
   return x;
 }
 
-// As below, for one row each.
+// The same as change_by_exchange(), for candidates of one row.
 double PlanDesign::change_by_exchange_of_one(const Leaving& leaving, std::size_t candidate, double x,
                                              double limit) const {
   const double wi = w_[square_[candidate]], sum_i = 1 + wi;
@@ -188,8 +188,9 @@ double PlanDesign::change_by_exchange_of_one(const Leaving& leaving, std::size_t
 }
 
 // Adding i, then taking out j: with W_ij = A_i M^-1 A_j' and K = (I + W_i)^-1 W_ij, W_j becomes W_j - W_ij' K, and
-// G_j becomes G_j - K' G_ij - G_ij' K + K' G_i K. With Q = I - W_j after that, tr(Q^-1 G_j) then is at least (a - b)^2,
-// a^2 = tr(Q^-1 G_j) with G_j before and b^2 = tr(Q^-1 K' G_i K), by the triangle inequality.
+// G_j becomes G_j - K' G_ij - G_ij' K + K' G_i K. With Q = I - W_j and the new W_j, tr(Q^-1 G_j) of the new G_j
+// is at least (a - b)^2 by the triangle inequality, where a^2 = tr(Q^-1 G_j) of the old G_j and b^2 = tr(Q^-1 K' G_i
+// K).
 double PlanDesign::change_by_exchange(const Leaving& leaving, std::size_t candidate, const double* x,
                                       double limit) const {
   const std::size_t n = space_.row_count(candidate), m = leaving.rows;

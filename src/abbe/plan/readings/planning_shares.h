@@ -27,13 +27,14 @@ struct GatheredBytes {
 GatheredBytes gather(const WorkInStep& in_step, std::uint64_t fingerprint, std::span<const std::byte> own);
 
 /// Blocks are dealt out to the processes in turn, so that neighbouring blocks, which are alike, do not burden one of
-/// them. Of many blocks, some neighbours go together: memory is read faster in longer pieces.
+/// them. If there are many blocks, several neighbours go to the same process, so that it reads longer stretches of
+/// memory.
 class PlanShares {
  public:
   PlanShares() = default;  ///< one process
   PlanShares(const WorkInStep& in_step, std::uint64_t fingerprint, std::size_t blocks);
 
-  /// The same processes with other blocks.
+  /// Shares of other blocks among the same processes.
   PlanShares of(std::size_t blocks) const { return {in_step_, fingerprint_, blocks}; }
   bool any() const { return in_step_.processes > 1; }
   std::size_t owner(std::size_t block) const { return block / together_ % in_step_.processes; }

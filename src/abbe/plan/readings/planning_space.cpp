@@ -85,7 +85,7 @@ PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::
   validate(candidates, known);
   const Index p = candidates.rows.cols();
   column_norms_ = squares_of_columns(candidates.rows, threads);
-  // Numbers that are not finite have no finite sum; but large ones may not have one either.
+  // If all sums are finite, so are all numbers; large numbers may have an infinite sum.
   if (!column_norms_.allFinite()) require_finite(candidates);
   if (known.rows() > 0) column_norms_ += known.colwise().squaredNorm().transpose();
   column_norms_ = column_norms_.cwiseSqrt().eval();
