@@ -65,12 +65,15 @@ void add_run_command(CommandLine& line) {
                             .summation = work.summation(),
                             .work = work.driver()});
       progress.end();
+      ReadyFiles ready;
+      if (result.usable()) ready.residuals_csv = residuals_csv(study, result, work.driver());
       if (!work.is_first()) return kDone;
       PrintedPage printed;
       std::optional<CustomerReport> customer;
       if (study.report.facts) customer = study_customer_report(study, result);
       if (options->pdf) printed = printed_customer_report(*customer);
-      const std::string summary = write_results(study, result, printed.pdf);
+      ready.customer_pdf = printed.pdf;
+      const std::string summary = write_results(study, result, ready);
       work.done();
       if (!options->qif.empty()) write_file_atomically(options->qif, study_qif_results(study, result));
       if (options->json) {

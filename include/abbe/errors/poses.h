@@ -22,8 +22,8 @@ struct PoseList {
 
   std::size_t count() const { return axis.empty() ? 0 : axis.front().size(); }
   std::vector<double> pose(std::size_t k) const {
-    std::vector<double> positions;
-    for (const std::vector<double>& values : axis) positions.push_back(values[k]);
+    std::vector<double> positions(axis.size());
+    for (std::size_t i = 0; i < axis.size(); ++i) positions[i] = axis[i][k];
     return positions;
   }
   void append(const std::vector<double>& positions) {

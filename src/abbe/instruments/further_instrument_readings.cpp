@@ -41,7 +41,17 @@ class InstrumentTrials {
         values_(measured.quantity_values()),
         device_(measured.instrument().with_values(values_)),
         freedom_(device_->pose_freedom()),
-        ranges_(measured_ranges(machine, measured.readings().poses)) {}
+        ranges_(measured_ranges(machine, measured.readings().poses)) {
+    for (const std::vector<double>& values : measured.readings().measured) {
+      const auto [low, high] = std::minmax_element(values.begin(), values.end());
+      shown_.push_back({*low, *high});
+    }
+    for (std::vector<double> stated : measured.readings().uncertainty) {
+      const auto middle = stated.begin() + static_cast<std::ptrdiff_t>(stated.size() / 2);
+      std::nth_element(stated.begin(), middle, stated.end());
+      uncertainty_.push_back(*middle);
+    }
+  }
 
   void add(std::vector<FurtherReadings>& list) {
     add_positions(list);
@@ -116,19 +126,20 @@ class InstrumentTrials {
   InstrumentReadings plan(const Change& change, const Instrument& device) const {
     const InstrumentReadings& readings = measured_.readings();
     const Machine& machine = machine_;
-    std::vector<std::size_t> bases;
-    for (std::size_t k = 0; k < readings.count(); ++k) {
+    std::vector<std::size_t> bases;  // with places only: else every reading is one
+    for (std::size_t k = 0; k < readings.count() && !change.places.empty(); ++k) {
       const std::vector<std::size_t>& used = device.items()[readings.item[k]].quantities;
-      if (change.places.empty() || std::find(used.begin(), used.end(), change.places.front()) != used.end())
-        bases.push_back(k);
+      if (std::find(used.begin(), used.end(), change.places.front()) != used.end()) bases.push_back(k);
     }
+    const std::size_t possible = change.places.empty() ? readings.count() : bases.size();
     InstrumentReadings result;
     result.poses.axis.resize(machine.axes.size());
     result.inputs.resize(readings.inputs.size());
-    for (std::size_t k = 0; k < kTrialReadings && !bases.empty(); ++k) {
+    for (std::size_t k = 0; k < kTrialReadings && possible > 0; ++k) {
       RandomStream random(23, k);
-      const std::size_t base = bases[std::min(
-          bases.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(bases.size())))];
+      const std::size_t drawn =
+          std::min(possible - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(possible)));
+      const std::size_t base = change.places.empty() ? drawn : bases[drawn];
       const std::size_t item = readings.item[base];
       const std::vector<double> old_pose = readings.poses.pose(base);
       std::vector<double> pose = old_pose;
@@ -170,7 +181,6 @@ class InstrumentTrials {
     InstrumentSimulationOptions options;
     options.noise_factor = 0;
     InstrumentReadings all = simulate_instrument(machine_, errors_, device, planned, options).readings;
-    const InstrumentReadings& before = measured_.readings();
     std::vector<std::size_t> kept;
     for (std::size_t k = 0; k < all.count(); ++k) {
       bool shown = true;
@@ -178,17 +188,13 @@ class InstrumentTrials {
         const double value = all.measured[c][k];
         shown = shown && std::isfinite(value);
         if (!device->components()[c].is_angle) continue;
-        const auto [low, high] = std::minmax_element(before.measured[c].begin(), before.measured[c].end());
-        shown = shown && value > *low - kAngleRange && value < *high + kAngleRange;
+        shown = shown && value > shown_[c].from - kAngleRange && value < shown_[c].to + kAngleRange;
       }
       if (shown) kept.push_back(k);
     }
     all = all.subset(kept);
     all.uncertainty.clear();
-    for (std::vector<double> stated : before.uncertainty) {
-      std::nth_element(stated.begin(), stated.begin() + static_cast<std::ptrdiff_t>(stated.size() / 2), stated.end());
-      all.uncertainty.emplace_back(all.count(), stated[stated.size() / 2]);
-    }
+    for (const double typical : uncertainty_) all.uncertainty.emplace_back(all.count(), typical);
     return all;
   }
 
@@ -223,6 +229,8 @@ class InstrumentTrials {
   std::shared_ptr<const Instrument> device_;  // at the present values
   PoseFreedom freedom_;
   std::vector<TrialRange> ranges_;
+  std::vector<TrialRange> shown_;    // [components] of the readings measured
+  std::vector<double> uncertainty_;  // [components] their median
 };
 
 }  // namespace

@@ -13,31 +13,29 @@
 #include "abbe/study/identification/identified_expansions.h"
 #include "abbe/study/identification/setup_drifts.h"
 #include "abbe/study/identification/time_blocks.h"
+#include "abbe/study/identification/turn_coverage.h"
 
 namespace abbe {
 namespace {
 
-/// Positions of one axis in all readings, sorted, each once.
-std::vector<double> measured_positions(const Machine& machine, const Campaign& campaign, std::size_t axis) {
-  std::vector<double> positions;
-  for (const CampaignSetup& setup : campaign.setups) {
-    const std::vector<double> values = positions_of_axis(machine, setup.poses(), axis);
-    positions.insert(positions.end(), values.begin(), values.end());
-  }
-  std::sort(positions.begin(), positions.end());
-  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
-  return positions;
-}
+/// Positions of one axis in all readings.
+struct MeasuredPositions {
+  std::vector<double> values;
+  PositionRange range;
 
-/// True if positions stand all around a turn, without a gap in which the highest harmonic could hide.
-bool covers_turn(const std::vector<double>& sorted, const Basis& basis) {
-  std::vector<double> around;
-  for (double position : sorted) around.push_back(position - basis.period * std::floor(position / basis.period));
-  std::sort(around.begin(), around.end());
-  double gap = around.front() + basis.period - around.back();
-  for (std::size_t i = 1; i < around.size(); ++i) gap = std::max(gap, around[i] - around[i - 1]);
-  return gap <= basis.period / (2.0 * basis.order + 1.0) + 1e-9 * basis.period;
-}
+  MeasuredPositions() = default;
+  MeasuredPositions(const Machine& machine, const Campaign& campaign, std::size_t axis) {
+    for (const CampaignSetup& setup : campaign.setups) {
+      const std::vector<double> more = positions_of_axis(machine, setup.poses(), axis);
+      values.insert(values.end(), more.begin(), more.end());
+    }
+    if (values.empty()) return;
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    range = {*low, *high};
+  }
+
+  bool move() const { return !values.empty() && range.from < range.to; }
+};
 
 /// Keeps one entry for each axis: where all of its error motions are stated.
 void note_coverage(const AxisCoverage& coverage, std::vector<AxisCoverage>& list) {
@@ -135,7 +133,7 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
   ErrorSet errors;
   std::optional<ErrorSet> initial;
   if (plan.initial_errors) initial = read_errors(*plan.initial_errors, study.machine, StatesOfErrors::allowed).errors;
-  std::vector<std::vector<double>> positions_of(study.machine.axes.size());  // of axes that were asked for
+  std::vector<MeasuredPositions> positions_of(study.machine.axes.size());  // of axes that were asked for
   for (const IdentifiedMotion& identified : plan.motions) {
     if (identified.expansion) {
       // Known over the whole length of the scale, whatever was measured.
@@ -148,16 +146,16 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
       continue;
     }
     const Axis& axis = study.machine.axes[identified.axis];
-    std::vector<double>& positions = positions_of[identified.axis];
-    if (positions.empty()) positions = measured_positions(study.machine, campaign, identified.axis);
+    MeasuredPositions& positions = positions_of[identified.axis];
+    if (positions.values.empty()) positions = MeasuredPositions(study.machine, campaign, identified.axis);
     ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}, identified.state};
     Basis& basis = motion.basis;
-    if (positions.size() < 2) {
+    if (!positions.move()) {
       model.impossible =
           fmt::format("axis {} does not move in any reading: its error motions cannot be identified", axis.name);
-    } else if (basis.kind == BasisKind::fourier ? !covers_turn(positions, basis)
+    } else if (basis.kind == BasisKind::fourier ? !covers_turn(positions.values, basis)
                                                 : basis.nodes.empty() && !basis.periodic) {
-      const PositionRange measured = {positions.front(), positions.back()}, wanted = {basis.from, basis.to};
+      const PositionRange measured = positions.range, wanted = {basis.from, basis.to};
       const PositionRange stated = stated_range(basis, measured, 0.01 * plan.coverage_margin_percent);
       if (stated.from < stated.to) {
         basis.from = stated.from;

@@ -6,7 +6,7 @@ std::vector<ItemResult> results_of_items(const WorkDriver& driver, const Numbere
   std::vector<ItemResult> results(items.count);
   NumberedWork work{.name = items.name, .blocks = items.count, .threads = items.threads};
   work.in_parallel = items.in_parallel;
-  work.for_all = true;
+  work.for_all = items.for_all;
   work.is_kept = false;
   work.fingerprint = items.fingerprint;
   work.compute = [&](std::size_t item) { results[item] = items.compute(item); };

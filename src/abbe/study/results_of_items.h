@@ -21,11 +21,12 @@ struct NumberedItems {
   std::size_t count = 0;
   int threads = 0;
   bool in_parallel = true;                       ///< as NumberedWork::in_parallel
+  bool for_all = true;                           ///< as NumberedWork::for_all
   std::function<std::uint64_t()> fingerprint{};  ///< as NumberedWork::fingerprint
   std::function<ItemResult(std::size_t item)> compute{};
 };
 
-/// @returns [count] in every process. They are not kept in a file
+/// @returns [count], in every process or in the first one: the others then have some. They are not kept in a file
 std::vector<ItemResult> results_of_items(const WorkDriver& driver, const NumberedItems& items);
 
 }  // namespace abbe

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "abbe/geometry/angle_units.h"
 #include "abbe/identify/distributions.h"
@@ -13,6 +14,7 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kMostClasses = 24;
+constexpr std::size_t kMostSorted = 65536;  // poses: their classes are as good as those of more
 constexpr double kClusterByChance = 1e-6;
 constexpr double kLeastRegion = 0.05;    // of all readings
 constexpr double kLeastLeftOut = 0.5;    // of the readings of a region
@@ -32,10 +34,10 @@ struct MarkedCount {
   }
 };
 
-/// One used reading.
-struct UsedReading {
-  std::size_t observations = 0, reading = 0, pose = 0;  ///< pose: which run of readings at the same pose
-  bool outlier = false;
+/// Used readings that follow each other at the same pose.
+struct UsedPose {
+  std::size_t observations = 0, first = 0, last = 0;  ///< readings first .. last; unused ones may be among them
+  MarkedCount readings;
 };
 
 /// What is counted in one class of a quantity.
@@ -48,27 +50,22 @@ class ClusterSearch {
  public:
   ClusterSearch(const Problem& problem, const std::vector<Outlier>& outliers, const std::vector<ReadingFacts>& facts)
       : problem_(problem), facts_(facts) {
-    std::vector<std::vector<bool>> marked;
     for (const SelectedObservations& selected : problem.observations)
-      marked.emplace_back(selected.observations->reading_count(), false);
-    for (const Outlier& outlier : outliers) marked[outlier.observations][outlier.reading] = true;
-    std::size_t pose = 0;
+      marked_.emplace_back(selected.observations->reading_count(), false);
+    for (const Outlier& outlier : outliers) marked_[outlier.observations][outlier.reading] = true;
     for (std::size_t o = 0; o < problem.observations.size(); ++o) {
-      const SelectedObservations& selected = problem.observations[o];
       std::vector<double> previous;
-      for (std::size_t k = 0; k < selected.observations->reading_count(); ++k) {
-        if (!selected.use.empty() && selected.use[k] == 0) continue;
-        std::vector<double> positions = selected.observations->positions(k);
+      for_each_used(o, [&](std::size_t k) {
+        std::vector<double> positions = problem.observations[o].observations->positions(k);
         if (positions != previous) {
-          ++pose;
-          pose_positions_.push_back(positions);
-          pose_marked_.push_back(false);
+          poses_.push_back({o, k, k, {}});
+          positions_.insert(positions_.end(), positions.begin(), positions.end());
         }
         previous = std::move(positions);
-        used_.push_back({o, k, pose - 1, marked[o][k]});
-        if (marked[o][k]) pose_marked_.back() = true;
-        all_.add(marked[o][k]);
-      }
+        poses_.back().last = k;
+        poses_.back().readings.add(marked_[o][k]);
+        all_.add(marked_[o][k]);
+      });
     }
   }
 
@@ -91,31 +88,55 @@ class ClusterSearch {
   }
 
  private:
-  /// Classes of a quantity with about as many poses each, in its order; equal values stay together.
-  /// @param of  the values of used readings, all of the same pose alike; NaN: not looked at
-  std::vector<ClassCount> classes_of(const std::function<double(const UsedReading&)>& of) const {
-    std::vector<std::pair<double, std::size_t>> poses;  // value, pose
-    std::vector<MarkedCount> readings(pose_positions_.size());
-    std::vector<bool> seen(pose_positions_.size(), false);
-    for (const UsedReading& used : used_) {
-      const double value = of(used);
-      if (std::isnan(value)) continue;
-      readings[used.pose].add(used.outlier);
-      if (!seen[used.pose]) poses.emplace_back(value, used.pose);
-      seen[used.pose] = true;
+  template <class Work>
+  void for_each_used(std::size_t o, const Work& work) const {
+    const std::vector<std::uint8_t>& use = problem_.observations[o].use;
+    for (std::size_t k = 0; k < marked_[o].size(); ++k)
+      if (use.empty() || use[k] != 0) work(k);
+  }
+
+  /// Smallest values of classes with about as many poses each; equal values stay together.
+  /// @param values  [poses], NaN: not looked at. Of many, some are looked at, chosen by a golden section: no regular
+  ///                order of the readings repeats with it
+  static std::vector<double> starts_of_classes(const std::vector<double>& values) {
+    std::vector<double> sorted;
+    const std::size_t count = std::min(values.size(), kMostSorted);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double turns = static_cast<double>(i) * std::numbers::phi;
+      const double place = (turns - std::floor(turns)) * static_cast<double>(values.size());
+      const double value = values[count == values.size() ? i : static_cast<std::size_t>(place)];
+      if (!std::isnan(value)) sorted.push_back(value);
     }
-    std::sort(poses.begin(), poses.end());
-    std::vector<ClassCount> classes;
-    const double per_class = static_cast<double>(poses.size()) / static_cast<double>(kMostClasses);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const auto& [value, pose] = poses[i];
-      const bool new_value = i == 0 || value > poses[i - 1].first;
-      const bool full = classes.empty() || static_cast<double>(i) >= per_class * static_cast<double>(classes.size());
-      if (new_value && full) classes.push_back({{}, {}, value, value});
-      ClassCount& last = classes.back();
-      last.to = value;
-      last.readings += readings[pose];
-      last.poses.add(pose_marked_[pose]);
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<double> starts;
+    const double per_class = static_cast<double>(sorted.size()) / static_cast<double>(kMostClasses);
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      const bool new_value = i == 0 || sorted[i] > sorted[i - 1];
+      if (new_value && static_cast<double>(i) >= per_class * static_cast<double>(starts.size()))
+        starts.push_back(sorted[i]);
+    }
+    return starts;
+  }
+
+  /// Classes of a quantity in its order.
+  /// @param of  the value of a pose by its number; NaN: not looked at
+  template <class Value>
+  std::vector<ClassCount> classes_of(const Value& of) const {
+    std::vector<double> values(poses_.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) values[i] = of(i);
+    const std::vector<double> starts = starts_of_classes(values);
+    if (starts.empty()) return {};
+    std::vector<ClassCount> classes(starts.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const double value = values[i];
+      if (std::isnan(value)) continue;
+      // What is below the first start was not among those that were sorted.
+      const auto after = std::upper_bound(starts.begin() + 1, starts.end(), value);
+      ClassCount& in = classes[static_cast<std::size_t>(after - starts.begin()) - 1];
+      in.from = in.poses.all == 0 ? value : std::min(in.from, value);
+      in.to = in.poses.all == 0 ? value : std::max(in.to, value);
+      in.readings += poses_[i].readings;
+      in.poses.add(poses_[i].readings.marked > 0);
     }
     return classes;
   }
@@ -148,8 +169,9 @@ class ClusterSearch {
     const Axis& of = problem_.machine.axes[axis];
     const bool rotary = of.kind == AxisKind::rotary;
     const double unit = rotary ? 1 / kDegree : 1;
-    look_along(classes_of([&](const UsedReading& used) { return pose_positions_[used.pose][axis]; }), [&](double from,
-                                                                                                          double to) {
+    const std::size_t axes = problem_.machine.axes.size();
+    look_along(classes_of([&](std::size_t pose) { return positions_[pose * axes + axis]; }), [&](double from,
+                                                                                                 double to) {
       return fmt::format("with {} from {:.6g} to {:.6g} {}", of.name, from * unit, to * unit, rotary ? "deg" : "mm");
     });
   }
@@ -157,26 +179,17 @@ class ClusterSearch {
   void look_along_time(std::size_t o) {
     // Without times the order of the data is that of time.
     const std::vector<double>& times = facts_[o].time_s;
-    look_along(classes_of([&](const UsedReading& used) {
-                 if (used.observations != o) return std::nan("");
-                 return times.empty() ? static_cast<double>(used.pose) : times[used.reading];
+    look_along(classes_of([&](std::size_t pose) {
+                 if (poses_[pose].observations != o) return std::nan("");
+                 return times.empty() ? static_cast<double>(pose) : times[poses_[pose].first];
                }),
                [&](double from, double to) {
-                 return times.empty() ? fmt::format("of set-up {} in rows {} to {} of its readings", facts_[o].setup,
-                                                    first_reading(from) + 1, last_reading(to) + 1)
-                                      : fmt::format("of set-up {} from {:.6g} to {:.6g} s", facts_[o].setup, from, to);
+                 if (!times.empty())
+                   return fmt::format("of set-up {} from {:.6g} to {:.6g} s", facts_[o].setup, from, to);
+                 return fmt::format("of set-up {} in rows {} to {} of its readings", facts_[o].setup,
+                                    poses_[static_cast<std::size_t>(from)].first + 1,
+                                    poses_[static_cast<std::size_t>(to)].last + 1);
                });
-  }
-
-  std::size_t first_reading(double pose) const {
-    return std::find_if(used_.begin(), used_.end(),
-                        [&](const UsedReading& used) { return used.pose == static_cast<std::size_t>(pose); })
-        ->reading;
-  }
-  std::size_t last_reading(double pose) const {
-    return std::find_if(used_.rbegin(), used_.rend(),
-                        [&](const UsedReading& used) { return used.pose == static_cast<std::size_t>(pose); })
-        ->reading;
   }
 
   void look_at(const std::vector<MarkedCount>& of_name, const std::function<std::string(std::size_t)>& words) {
@@ -194,8 +207,7 @@ class ClusterSearch {
 
   void look_at_label(std::size_t o, const ReadingLabel& label) {
     std::vector<MarkedCount> of_name(label.names.size());
-    for (const UsedReading& used : used_)
-      if (used.observations == o) of_name[label.of_reading[used.reading]].add(used.outlier);
+    for_each_used(o, [&](std::size_t k) { of_name[label.of_reading[k]].add(marked_[o][k]); });
     look_at(of_name, [&](std::size_t i) {
       return fmt::format("of {} {} of set-up {}", label.kind, label.names[i], facts_[o].setup);
     });
@@ -203,15 +215,15 @@ class ClusterSearch {
 
   void look_at_setups() {
     std::vector<MarkedCount> of_setup(facts_.size());
-    for (const UsedReading& used : used_) of_setup[used.observations].add(used.outlier);
+    for (const UsedPose& pose : poses_) of_setup[pose.observations] += pose.readings;
     look_at(of_setup, [&](std::size_t i) { return "of set-up " + facts_[i].setup; });
   }
 
   const Problem& problem_;
   const std::vector<ReadingFacts>& facts_;
-  std::vector<UsedReading> used_;
-  std::vector<std::vector<double>> pose_positions_;
-  std::vector<bool> pose_marked_;
+  std::vector<std::vector<bool>> marked_;  // [observations][readings]
+  std::vector<UsedPose> poses_;
+  std::vector<double> positions_;  // [poses][axes]
   MarkedCount all_;
   std::size_t parts_ = 0;
   std::vector<OutlierCluster> best_;

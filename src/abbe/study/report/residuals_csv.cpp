@@ -6,13 +6,14 @@
 #include <cstdint>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "abbe/formats/text/csv_reader.h"
-#include "abbe/geometry/parallel_blocks.h"
+#include "abbe/geometry/digest.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/study/report/report_residuals.h"
 #include "abbe/study/report/results.h"
+#include "abbe/study/results_of_items.h"
 
 namespace abbe {
 namespace {
@@ -27,9 +28,11 @@ class ResidualRows {
         use_(result.model.problem.observations[s].use),
         points_(result.campaign.setups[s].readings.point_name),
         name_(csv_field(result.campaign.setups[s].name)),
-        components_(residual_components(observations_)),
         weights_(observations_.reading_count(), 1.0) {
     for (const Axis& axis : machine.axes) per_unit_.push_back(1 / position_unit(axis));
+    for (const ReadingComponent& component : observations_.components()) {
+      columns_.push_back({component.name, micro_unit(component.is_angle), micro_per_unit(component.is_angle)});
+    }
     for (const Outlier& outlier : result.identification.outliers)
       if (outlier.observations == s) weights_[outlier.reading] = outlier.weight;
   }
@@ -37,47 +40,78 @@ class ResidualRows {
   std::size_t block_count() const { return (weights_.size() + kTogether - 1) / kTogether; }
 
   std::string block(std::size_t number) const {
-    const std::size_t first = number * kTogether, last = std::min(first + kTogether, weights_.size());
-    std::string text, start;
-    for (std::size_t k = first; k < last; ++k) {
-      start.clear();
-      auto out = std::back_inserter(start);
-      fmt::format_to(out, FMT_COMPILE("{},{},"), name_, k);
-      if (!points_.empty() && !points_[k].empty()) start += csv_field(points_[k]);
-      const std::vector<double> positions = observations_.positions(k);
-      for (std::size_t i = 0; i < positions.size(); ++i)
-        fmt::format_to(out, FMT_COMPILE(",{:.9g}"), positions[i] * per_unit_[i]);
-      fmt::format_to(out, FMT_COMPILE(",{},{:.4g}"), use_.empty() || use_[k] != 0 ? 1 : 0, weights_[k]);
-      for (const ResidualComponent& component : components_) {
-        fmt::format_to(std::back_inserter(text), FMT_COMPILE("{},{},{:.5g},{:.5g},{}\n"), start, component.name,
-                       component.normalised[k], component.residual[k], component.unit);
+    const std::size_t end = std::min((number + 1) * kTogether, weights_.size()), rows = columns_.size();
+    std::vector<double> normalised(rows * Observations::kBlockSize), residual(normalised.size());
+    fmt::memory_buffer text, start;
+    for (std::size_t first = number * kTogether; first < end; first += Observations::kBlockSize) {
+      const std::size_t count = std::min(Observations::kBlockSize, end - first);
+      observations_.evaluate(first, count, {}, {}, normalised.data(), nullptr, 0);
+      observations_.deviations(first, count, residual.data());
+      for (std::size_t k = 0; k < count; ++k) {
+        start.clear();
+        write_start(first + k, start);
+        for (std::size_t row = 0; row < rows; ++row) {
+          text.append(start);
+          const Column& column = columns_[row];
+          fmt::format_to(std::back_inserter(text), FMT_COMPILE("{},{:.5g},{:.5g},{}\n"), column.name,
+                         normalised[row * count + k], residual[row * count + k] * column.micro_per_unit, column.unit);
+        }
       }
     }
-    return text;
+    return fmt::to_string(text);
   }
 
  private:
+  struct Column {
+    std::string name, unit;
+    double micro_per_unit = 1;
+  };
+
+  void write_start(std::size_t reading, fmt::memory_buffer& text) const {
+    auto out = std::back_inserter(text);
+    fmt::format_to(out, FMT_COMPILE("{},{},"), name_, reading);
+    if (!points_.empty() && !points_[reading].empty()) text.append(csv_field(points_[reading]));
+    const std::vector<double> positions = observations_.positions(reading);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      fmt::format_to(out, FMT_COMPILE(",{:.9g}"), positions[i] * per_unit_[i]);
+    const int used = use_.empty() || use_[reading] != 0 ? 1 : 0;
+    fmt::format_to(out, FMT_COMPILE(",{},{:.4g},"), used, weights_[reading]);
+  }
+
   const Observations& observations_;
   const std::vector<std::uint8_t>& use_;
   const std::vector<std::string>& points_;
   std::string name_;
-  std::vector<ResidualComponent> components_;
+  std::vector<Column> columns_;   // [components]
   std::vector<double> weights_;   // [readings]
   std::vector<double> per_unit_;  // [axes]
 };
 
 }  // namespace
 
-std::string residuals_csv(const Study& study, const StudyResult& result) {
+std::string residuals_csv(const Study& study, const StudyResult& result, const WorkDriver& work) {
+  std::vector<ResidualRows> setups;
+  std::vector<std::pair<std::size_t, std::size_t>> blocks;  // set-up, block of it
+  for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
+    setups.emplace_back(study.machine, result, s);
+    for (std::size_t number = 0; number < setups[s].block_count(); ++number) blocks.emplace_back(s, number);
+  }
+  NumberedItems items{.name = "residuals", .count = blocks.size(), .threads = study.threads};
+  items.for_all = false;
+  items.fingerprint = [&] {
+    Digest digest;  // equal readings were required by the sums that led to the estimates
+    for (const ResidualRows& rows : setups) digest.add(rows.block_count());
+    digest.add_numbers(
+        {result.identification.estimates.data(), static_cast<std::size_t>(result.identification.estimates.size())});
+    return digest.value();
+  };
+  items.compute = [&](std::size_t item) {
+    return ItemResult{{}, setups[blocks[item].first].block(blocks[item].second)};
+  };
   std::string text = "setup,reading,point";
   for (const Axis& axis : study.machine.axes) text += fmt::format(",{}_{}", axis.name, position_suffix(axis));
   text += ",used,weight,component,normalised,residual,unit\n";
-  for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
-    const ResidualRows rows(study.machine, result, s);
-    std::vector<std::string> blocks(rows.block_count());
-    for_each_block(blocks.size(), study.threads, [&](std::size_t number) { blocks[number] = rows.block(number); });
-    for (const std::string& block : blocks) text += block;
-  }
+  for (const ItemResult& block : results_of_items(work, items)) text += block.text;
   return text;
 }
 

@@ -67,7 +67,7 @@ MapData map_data(const Machine& machine, const PoseList& poses, const std::vecto
   return data;
 }
 
-std::string write_results(const Study& study, const StudyResult& result, const std::string& customer_pdf) {
+std::string write_results(const Study& study, const StudyResult& result, const ReadyFiles& ready) {
   const nlohmann::ordered_json summary = study_summary(study, result);
   std::string summary_text = json_text(summary);
   ResultsFolder folder(study.output);
@@ -87,7 +87,7 @@ std::string write_results(const Study& study, const StudyResult& result, const s
         {"study", study.name}, {"method", "abbe identify"}, {"gauge", "ISO 230 conventions, see report"}};
     folder.write("errors.toml", errors_text(study.machine, errors, "errors.covariance.csv"));
     folder.write("errors.covariance.csv", covariance_text(study.machine, errors));
-    folder.write("residuals.csv", residuals_csv(study, result));
+    folder.write("residuals.csv", ready.residuals_csv ? *ready.residuals_csv : residuals_csv(study, result));
   }
   if (result.map) {
     const StudyMap& map = *result.map;
@@ -104,7 +104,7 @@ std::string write_results(const Study& study, const StudyResult& result, const s
   if (study.report.facts && !study.report.facts->laboratory.empty()) {
     folder.write("calibration-certificate.xml", study_certificate(study, result));
   }
-  if (!customer_pdf.empty()) folder.write("customer-report.pdf", customer_pdf);
+  if (!ready.customer_pdf.empty()) folder.write("customer-report.pdf", ready.customer_pdf);
   folder.commit();
   return summary_text;
 }
