@@ -102,6 +102,30 @@ TEST(OutlierClusters, AReflectorAndAnHourAreFound) {
   EXPECT_EQ(clusters[0].where, "of set-up tracker from 875 to 995 s") << "in whole classes: the outliers begin at 900";
 }
 
+TEST(OutlierClusters, OfVeryManyPosesEveryOneIsCounted) {
+  // Turns of 360 equal steps while X moves on: poses chosen at equal steps would all stand at the same few angles.
+  constexpr std::size_t kPoses = 180000;
+  std::vector<std::vector<double>> positions;
+  std::vector<Outlier> outliers;
+  for (std::size_t k = 0; k < kPoses; ++k) {
+    const double step = static_cast<double>(k % 360);
+    positions.push_back({(step - 180) * kDegree, 1e-3 * static_cast<double>(k), 0});
+    if (k % 360 < 90 || k == kPoses - 1) outliers.push_back({0, k, 10, 0});
+  }
+  PlacedObservations observations(positions, std::vector<double>(kPoses, 0.0));
+  Problem problem = function_problem({&observations});
+  problem.machine = test::aguado_table();
+  ReadingFacts facts;
+  facts.setup = "tracker";
+  const std::vector<OutlierCluster> clusters = outlier_clusters(problem, outliers, {facts});
+  ASSERT_EQ(clusters.size(), 1U) << "X and the rows say nothing";
+  EXPECT_THAT(clusters[0].where, HasSubstr("with C from -180 to -9"));
+  EXPECT_NEAR(static_cast<double>(clusters[0].readings), kPoses / 4.0, kPoses / 360.0);
+  EXPECT_GT(clusters[0].outliers, kPoses / 4 - kPoses / 360 - 1);
+  EXPECT_EQ(clusters[0].readings + clusters[0].readings_elsewhere, kPoses);
+  EXPECT_EQ(clusters[0].outliers + clusters[0].outliers_elsewhere, outliers.size());
+}
+
 TEST(OutlierClusters, AFewInARowAreTooSmallARegion) {
   // A beam that was broken for 100 s of 4000: told, but the rest stands.
   const PlacedReadings placed = placed_readings(800, 5);
