@@ -32,9 +32,9 @@ double student_quantile(double exceedance, double degrees_of_freedom);
 /// Student's t of their mean, one-sided, with the scatter that they show. 1 for fewer than three values.
 double sum_exceedance(std::span<const double> values, double expected);
 
-/// Probability of `marked_drawn` or more marked items in a draw of `drawn` without replacement from `all` items of
-/// which `marked` are marked.
-double hypergeometric_exceedance(std::size_t all, std::size_t marked, std::size_t drawn, std::size_t marked_drawn);
+/// Natural logarithm of the probability of `marked_drawn` or more marked items in a draw of `drawn` without replacement
+/// from `all` items of which `marked` are marked. Of many items the probability itself may be too small for a double.
+double log_hypergeometric_exceedance(std::size_t all, std::size_t marked, std::size_t drawn, std::size_t marked_drawn);
 
 /// Probabilities of several tests, adjusted so that each may be compared with the level of the family: whoever rejects
 /// where the adjusted one is at most a level rejects any true hypothesis with at most that probability, however the

@@ -197,21 +197,26 @@ TEST(Distributions, nothing_throws_for_arguments_outside_the_range) {
 }
 
 TEST(Distributions, hypergeometric_exceedance_agrees_with_counting) {
+  const auto exceedance = [](std::size_t all, std::size_t marked, std::size_t drawn, std::size_t marked_drawn) {
+    return std::exp(log_hypergeometric_exceedance(all, marked, drawn, marked_drawn));
+  };
   // Of 10 with 4 marked, 5 are drawn: (C(4,3) C(6,2) + C(4,4) C(6,1)) / C(10,5).
-  EXPECT_NEAR(hypergeometric_exceedance(10, 4, 5, 3), 66.0 / 252, 1e-14);
-  EXPECT_NEAR(hypergeometric_exceedance(10, 4, 5, 1), 1 - 6.0 / 252, 1e-14);
-  EXPECT_EQ(hypergeometric_exceedance(10, 4, 5, 0), 1);
-  EXPECT_EQ(hypergeometric_exceedance(10, 4, 5, 5), 0);
+  EXPECT_NEAR(exceedance(10, 4, 5, 3), 66.0 / 252, 1e-14);
+  EXPECT_NEAR(exceedance(10, 4, 5, 1), 1 - 6.0 / 252, 1e-14);
+  EXPECT_EQ(exceedance(10, 4, 5, 0), 1);
+  EXPECT_EQ(exceedance(10, 4, 5, 5), 0);
   // All draws beyond what is not marked are marked.
-  EXPECT_EQ(hypergeometric_exceedance(10, 8, 5, 3), 1);
-  EXPECT_NEAR(hypergeometric_exceedance(1000, 4, 4, 4) * 41417124750, 1, 1e-9);
+  EXPECT_EQ(exceedance(10, 8, 5, 3), 1);
+  EXPECT_NEAR(exceedance(1000, 4, 4, 4) * 41417124750, 1, 1e-9);
   for (std::size_t k = 1; k < 50; ++k) {
-    const double down = hypergeometric_exceedance(400, 60, 130, k), up = hypergeometric_exceedance(400, 60, 130, k + 1);
+    const double down = exceedance(400, 60, 130, k), up = exceedance(400, 60, 130, k + 1);
     EXPECT_LE(up, down) << k;
   }
   // Counted with whole numbers of any length.
-  EXPECT_NEAR(hypergeometric_exceedance(1000, 300, 400, 180) / 3.6989358726384235774e-17, 1, 1e-12);
-  EXPECT_NEAR(hypergeometric_exceedance(100000, 1000, 5000, 75) / 0.00038426809174742368053, 1, 1e-9);
+  EXPECT_NEAR(log_hypergeometric_exceedance(180000, 45001, 45000, 45000), -101203.47928300725, 1e-6);
+  EXPECT_NEAR(log_hypergeometric_exceedance(20000, 5000, 4000, 3500), -4764.993206910998, 1e-7);
+  EXPECT_NEAR(exceedance(1000, 300, 400, 180) / 3.6989358726384235774e-17, 1, 1e-12);
+  EXPECT_NEAR(exceedance(100000, 1000, 5000, 75) / 0.00038426809174742368053, 1, 1e-9);
 }
 
 TEST(Distributions, holm_multiplies_by_the_tests_that_are_left) {

@@ -14,7 +14,10 @@ struct OutlierCluster {
   std::size_t readings = 0;  ///< used readings in it
   std::size_t outliers = 0;  ///< of these
   std::size_t readings_elsewhere = 0, outliers_elsewhere = 0;
-  double probability = 1;  ///< of so many or more by chance, times the number of parts that were looked at; <= 1
+  double log_probability = 0;  ///< natural logarithm of probability()
+
+  /// Of so many or more by chance, times the number of parts that were looked at; at most 1, and 0 below 1e-323.
+  double probability() const;
 
   /// Half of a part that holds a twentieth of all readings or more: the result says nothing about it.
   bool is_region_left_out() const;
@@ -32,6 +35,9 @@ struct OutlierCluster {
 /// @returns by probability, smallest first
 std::vector<OutlierCluster> outlier_clusters(const Problem& problem, const std::vector<Outlier>& outliers,
                                              const std::vector<ReadingFacts>& facts);
+
+/// Its probability: "2.3e-09", "below 1e-300".
+std::string chance_text(const OutlierCluster& cluster);
 
 /// "107 of 110 readings with B from -90 to -51 deg are outliers, 3 of the 890 others".
 std::string cluster_text(const OutlierCluster& cluster);

@@ -79,11 +79,12 @@ class ClusterSearch {
     look_at_setups();
     std::vector<OutlierCluster> clusters;
     for (OutlierCluster& best : best_) {
-      best.probability = std::min(1.0, best.probability * static_cast<double>(parts_));
-      if (best.probability < kClusterByChance) clusters.push_back(std::move(best));
+      best.log_probability = std::min(0.0, best.log_probability + std::log(static_cast<double>(parts_)));
+      if (best.probability() < kClusterByChance) clusters.push_back(std::move(best));
     }
-    std::stable_sort(clusters.begin(), clusters.end(),
-                     [](const OutlierCluster& a, const OutlierCluster& b) { return a.probability < b.probability; });
+    std::stable_sort(clusters.begin(), clusters.end(), [](const OutlierCluster& a, const OutlierCluster& b) {
+      return a.log_probability < b.log_probability;
+    });
     return clusters;
   }
 
@@ -153,16 +154,16 @@ class ClusterSearch {
         poses_in += classes[last].poses;
         if (poses_in.all == poses.all || poses_in.all < kFewestPoses) continue;
         ++parts_;
-        const double chance = hypergeometric_exceedance(poses.all, poses.marked, poses_in.all, poses_in.marked);
-        if (chance < best.probability)
+        const double chance = log_hypergeometric_exceedance(poses.all, poses.marked, poses_in.all, poses_in.marked);
+        if (chance < best.log_probability)
           best = cluster(words(classes[first].from, classes[last].to), readings_in, chance);
       }
     }
-    if (best.probability < 1) best_.push_back(best);
+    if (best.log_probability < 0) best_.push_back(best);
   }
 
-  OutlierCluster cluster(std::string where, const MarkedCount& in, double chance) const {
-    return {std::move(where), in.all, in.marked, all_.all - in.all, all_.marked - in.marked, chance};
+  OutlierCluster cluster(std::string where, const MarkedCount& in, double log_chance) const {
+    return {std::move(where), in.all, in.marked, all_.all - in.all, all_.marked - in.marked, log_chance};
   }
 
   void look_along_axis(std::size_t axis) {
@@ -199,10 +200,10 @@ class ClusterSearch {
     for (std::size_t i = 0; i < of_name.size(); ++i) {
       if (of_name[i].all == 0 || of_name[i].all == all.all) continue;
       ++parts_;
-      const double chance = hypergeometric_exceedance(all.all, all.marked, of_name[i].all, of_name[i].marked);
-      if (chance < best.probability) best = cluster(words(i), of_name[i], chance);
+      const double chance = log_hypergeometric_exceedance(all.all, all.marked, of_name[i].all, of_name[i].marked);
+      if (chance < best.log_probability) best = cluster(words(i), of_name[i], chance);
     }
-    if (best.probability < 1) best_.push_back(best);
+    if (best.log_probability < 0) best_.push_back(best);
   }
 
   void look_at_label(std::size_t o, const ReadingLabel& label) {
@@ -231,6 +232,8 @@ class ClusterSearch {
 
 }  // namespace
 
+double OutlierCluster::probability() const { return std::exp(log_probability); }
+
 bool OutlierCluster::is_region_left_out() const {
   const double in = static_cast<double>(readings);
   return in >= kLeastRegion * (in + static_cast<double>(readings_elsewhere)) &&
@@ -240,6 +243,12 @@ bool OutlierCluster::is_region_left_out() const {
 std::vector<OutlierCluster> outlier_clusters(const Problem& problem, const std::vector<Outlier>& outliers,
                                              const std::vector<ReadingFacts>& facts) {
   return ClusterSearch(problem, outliers, facts).run();
+}
+
+std::string chance_text(const OutlierCluster& cluster) {
+  constexpr double kLeastTold = 1e-300;
+  return cluster.probability() < kLeastTold ? fmt::format("below {:.0e}", kLeastTold)
+                                            : fmt::format("{:.1e}", cluster.probability());
 }
 
 std::string cluster_text(const OutlierCluster& cluster) {

@@ -61,12 +61,12 @@ void judge_outliers(const std::vector<ReadingFacts>& facts, bool robust, StudyRe
             {"outliers", static_cast<double>(cluster.outliers)},
             {"readings_elsewhere", static_cast<double>(cluster.readings_elsewhere)},
             {"outliers_elsewhere", static_cast<double>(cluster.outliers_elsewhere)},
-            {"probability", cluster.probability}}});
+            {"probability", cluster.probability()}}});
     } else {
       result.warnings.push_back(
-          fmt::format("outliers are clustered: {} (by chance with a probability of {:.1e}). Something was different "
+          fmt::format("outliers are clustered: {} (by chance with a probability of {}). Something was different "
                       "there, or the model does not hold.",
-                      text, cluster.probability));
+                      text, chance_text(cluster)));
     }
   }
 }
