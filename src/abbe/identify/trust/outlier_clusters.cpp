@@ -248,7 +248,7 @@ std::vector<OutlierCluster> outlier_clusters(const Problem& problem, const std::
 std::string chance_text(const OutlierCluster& cluster) {
   constexpr double kLeastTold = 1e-300;
   return cluster.probability() < kLeastTold ? fmt::format("below {:.0e}", kLeastTold)
-                                            : fmt::format("{:.1e}", cluster.probability());
+                                            : fmt::format("of {:.1e}", cluster.probability());
 }
 
 std::string cluster_text(const OutlierCluster& cluster) {

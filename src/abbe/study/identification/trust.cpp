@@ -64,7 +64,7 @@ void judge_outliers(const std::vector<ReadingFacts>& facts, bool robust, StudyRe
             {"probability", cluster.probability()}}});
     } else {
       result.warnings.push_back(
-          fmt::format("outliers are clustered: {} (by chance with a probability of {}). Something was different "
+          fmt::format("outliers are clustered: {} (by chance with a probability {}). Something was different "
                       "there, or the model does not hold.",
                       text, chance_text(cluster)));
     }
