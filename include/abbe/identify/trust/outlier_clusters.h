@@ -36,9 +36,6 @@ struct OutlierCluster {
 std::vector<OutlierCluster> outlier_clusters(const Problem& problem, const std::vector<Outlier>& outliers,
                                              const std::vector<ReadingFacts>& facts);
 
-/// After "a probability": "of 2.3e-09", "below 1e-300".
-std::string chance_text(const OutlierCluster& cluster);
-
 /// "107 of 110 readings with B from -90 to -51 deg are outliers, 3 of the 890 others".
 std::string cluster_text(const OutlierCluster& cluster);
 

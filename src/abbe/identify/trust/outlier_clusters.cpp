@@ -245,12 +245,6 @@ std::vector<OutlierCluster> outlier_clusters(const Problem& problem, const std::
   return ClusterSearch(problem, outliers, facts).run();
 }
 
-std::string chance_text(const OutlierCluster& cluster) {
-  constexpr double kLeastTold = 1e-300;
-  return cluster.probability() < kLeastTold ? fmt::format("below {:.0e}", kLeastTold)
-                                            : fmt::format("of {:.1e}", cluster.probability());
-}
-
 std::string cluster_text(const OutlierCluster& cluster) {
   return fmt::format("{} of the {} readings {} are outliers, {} of the {} others", cluster.outliers, cluster.readings,
                      cluster.where, cluster.outliers_elsewhere, cluster.readings_elsewhere);

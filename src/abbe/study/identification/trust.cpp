@@ -17,6 +17,8 @@ namespace {
 
 /// Less than chance, but not enough to refuse the result: worth telling.
 constexpr double kHardlyChance = 1e-4;
+/// A smaller probability is told as below this.
+constexpr double kLeastTold = 1e-300;
 
 std::string warning_of_poor_fit(const FitStatistics& fit) {
   if (!(fit.degrees_of_freedom > 0) || !(fit.variance_factor > 1) || !(fit.p_value < kHardlyChance)) return {};
@@ -63,10 +65,11 @@ void judge_outliers(const std::vector<ReadingFacts>& facts, bool robust, StudyRe
             {"outliers_elsewhere", static_cast<double>(cluster.outliers_elsewhere)},
             {"probability", cluster.probability()}}});
     } else {
-      result.warnings.push_back(
-          fmt::format("outliers are clustered: {} (by chance with a probability {}). Something was different "
-                      "there, or the model does not hold.",
-                      text, chance_text(cluster)));
+      const std::string chance = cluster.probability() < kLeastTold
+                                     ? fmt::format(" (by chance with a probability below {:.0e})", kLeastTold)
+                                     : fmt::format(" (by chance with a probability of {:.1e})", cluster.probability());
+      result.warnings.push_back("outliers are clustered: " + text + chance +
+                                ". Something was different there, or the model does not hold.");
     }
   }
 }

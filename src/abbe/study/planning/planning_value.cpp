@@ -11,6 +11,7 @@ namespace {
 
 using Eigen::Index;
 constexpr std::size_t kMostNamed = 8;
+constexpr double kEqualShare = 1e-6;
 
 }  // namespace
 
@@ -33,12 +34,14 @@ std::string open_errors(const PlanningModel& model, const PlanningSpace& space, 
   const Eigen::MatrixXd prior = model.weak_prior() + model.known().transpose() * model.known();
   const Eigen::VectorXd weights = prior.diagonal().cwiseSqrt();
   const Eigen::MatrixXd directions = weights.asDiagonal() * space.estimates_from_seen() * svd.vectors.rightCols(open);
-  const Eigen::VectorXd share = directions.colwise().normalized().rowwise().squaredNorm();
+  // The squared cosines between the parameters and all that is open: which directions describe it does not matter.
+  const PivotedQr qr(directions);
+  const Eigen::VectorXd share = qr.orthonormal(qr.rank()).rowwise().squaredNorm();
   std::vector<std::size_t> order(static_cast<std::size_t>(share.size()));
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return share[static_cast<Index>(a)] > share[static_cast<Index>(b)];
-  });
+  // Shares that differ by rounding are equal: the first parameter is named first.
+  const auto rounded = [&](std::size_t i) { return std::round(share[static_cast<Index>(i)] / kEqualShare); };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rounded(a) > rounded(b); });
   std::string text;
   for (std::size_t k = 0; k < std::min(kMostNamed, order.size()); ++k)
     text += (k > 0 ? ", " : "") + model.parameters()[order[k]].name;
