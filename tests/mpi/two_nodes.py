@@ -4,6 +4,7 @@ mpirun starts a daemon in the namespace, as it does on another machine, and the 
 root and iproute2; without them the tests are skipped (exit code 77).
 """
 
+import contextlib
 import os
 import pathlib
 import shutil
@@ -57,15 +58,19 @@ class TwoNodes:
 
     def __exit__(self, *_):
         for process in self.processes():
-            os.kill(process, signal.SIGKILL)
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
         self.ip("link", "delete", self.here)
         self.ip("netns", "delete", self.name)
 
-    def processes(self, name=None):
-        """On the second node; by name: those of a program."""
-        found = [int(line) for line in self.ip("netns", "pids", self.name).stdout.split()]
-        return [one for one in found
-                if name in (None, pathlib.Path(f"/proc/{one}/comm").read_text(errors="replace").strip())]
+    def processes(self):
+        """Numbers of those on the second node."""
+        return [int(line) for line in self.ip("netns", "pids", self.name).stdout.split()]
+
+    def daemon(self):
+        """The number of mpirun's daemon there."""
+        (found,) = [one for one in self.processes() if pathlib.Path(f"/proc/{one}/comm").read_text() == "orted\n"]
+        return found
 
     def cut_off(self):
         """As if its power were gone: nothing that is sent arrives, and no connection is closed."""
@@ -126,8 +131,7 @@ def lost_node(runs):
             if silent:
                 nodes.cut_off()
             else:
-                (daemon,) = nodes.processes("orted")
-                os.kill(daemon, signal.SIGKILL)
+                os.kill(nodes.daemon(), signal.SIGKILL)
             try:
                 _, errors = job.communicate(timeout=120)
             finally:

@@ -126,7 +126,7 @@ class InstrumentTrials {
   InstrumentReadings plan(const Change& change, const Instrument& device) const {
     const InstrumentReadings& readings = measured_.readings();
     const Machine& machine = machine_;
-    std::vector<std::size_t> bases;  // with places only: else every reading is one
+    std::vector<std::size_t> bases;  // filled only if places change; otherwise every reading is a base
     for (std::size_t k = 0; k < readings.count() && !change.places.empty(); ++k) {
       const std::vector<std::size_t>& used = device.items()[readings.item[k]].quantities;
       if (std::find(used.begin(), used.end(), change.places.front()) != used.end()) bases.push_back(k);

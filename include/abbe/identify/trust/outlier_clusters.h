@@ -27,10 +27,10 @@ struct OutlierCluster {
 ///
 /// By chance, outliers would be a random draw of the readings: the number in a part is then hypergeometric. Readings
 /// that follow each other at one pose count as one where ranges are looked at, because what happens at a pose happens
-/// to all of them. Ranges are whole numbers of at most 24 classes with about as many poses each; of more than 65,536
-/// poses, a choice of so many divides the range into classes. Probabilities are multiplied by the number of all parts
-/// looked at (Bonferroni); a cluster is what then stays below 1e-6. Of each axis, of time and of each kind of label the
-/// most significant part is given.
+/// to all of them. Ranges are whole numbers of at most 24 classes with about as many poses each; with more than
+/// 65,536 poses, the limits of the classes come from a sample of that size. Probabilities are multiplied by the number
+/// of all parts looked at (Bonferroni); a cluster is what then stays below 1e-6. Of each axis, of time and of each kind
+/// of label the most significant part is given.
 /// @param facts  [problem.observations]
 /// @returns by probability, smallest first
 std::vector<OutlierCluster> outlier_clusters(const Problem& problem, const std::vector<Outlier>& outliers,

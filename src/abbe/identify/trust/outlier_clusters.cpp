@@ -97,8 +97,8 @@ class ClusterSearch {
   }
 
   /// Smallest values of classes with about as many poses each; equal values stay together.
-  /// @param values  [poses], NaN: not looked at. Of many, some are looked at, chosen by a golden section: no regular
-  ///                order of the readings repeats with it
+  /// @param values  [poses], NaN: not looked at. Of more than kMostSorted, a sample is sorted. It is spread by the
+  ///                golden ratio, so that it cannot fall into step with a regular order of the readings
   static std::vector<double> starts_of_classes(const std::vector<double>& values) {
     std::vector<double> sorted;
     const std::size_t count = std::min(values.size(), kMostSorted);
@@ -131,7 +131,7 @@ class ClusterSearch {
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       const double value = values[i];
       if (std::isnan(value)) continue;
-      // What is below the first start was not among those that were sorted.
+      // A value below the first start was not in the sample.
       const auto after = std::upper_bound(starts.begin() + 1, starts.end(), value);
       ClassCount& in = classes[static_cast<std::size_t>(after - starts.begin()) - 1];
       in.from = in.poses.all == 0 ? value : std::min(in.from, value);

@@ -17,7 +17,7 @@ namespace {
 
 /// Less than chance, but not enough to refuse the result: worth telling.
 constexpr double kHardlyChance = 1e-4;
-/// A smaller probability is told as below this.
+/// Smaller probabilities are reported as below this value.
 constexpr double kLeastTold = 1e-300;
 
 std::string warning_of_poor_fit(const FitStatistics& fit) {

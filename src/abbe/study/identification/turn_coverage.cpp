@@ -9,7 +9,7 @@ namespace abbe {
 bool covers_turn(std::span<const double> positions, const Basis& basis) {
   if (positions.empty()) return false;
   const double widest = basis.period / (2.0 * basis.order + 1.0) + 1e-9 * basis.period;
-  // Parts of the turn half as wide as the widest gap: a gap that is too wide is never within one of them.
+  // Each part is half as wide as the widest gap that is allowed, so no gap that is too wide lies within one part.
   struct Part {
     bool empty = true;
     double first = 0, last = 0;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,17 @@ class ResidualRows {
   }
 
   std::size_t block_count() const { return (weights_.size() + kTogether - 1) / kTogether; }
+
+  /// What the rows depend on besides the residuals.
+  void add_to(Digest& digest) const {
+    digest.add_text(name_);
+    digest.add(points_.size());
+    for (const std::string& point : points_) digest.add_text(point);
+    for (const Column& column : columns_) digest.add_text(column.name + column.unit);
+    digest.add_bytes(std::as_bytes(std::span(use_)));
+    digest.add_numbers(weights_);
+    digest.add_numbers(per_unit_);
+  }
 
   std::string block(std::size_t number) const {
     const std::size_t end = std::min((number + 1) * kTogether, weights_.size()), rows = columns_.size();
@@ -99,8 +111,8 @@ std::string residuals_csv(const Study& study, const StudyResult& result, const W
   NumberedItems items{.name = "residuals", .count = blocks.size(), .threads = study.threads};
   items.for_all = false;
   items.fingerprint = [&] {
-    Digest digest;  // equal readings were required by the sums that led to the estimates
-    for (const ResidualRows& rows : setups) digest.add(rows.block_count());
+    Digest digest;  // the sums that led to the estimates have required equal readings
+    for (const ResidualRows& rows : setups) rows.add_to(digest);
     digest.add_numbers(
         {result.identification.estimates.data(), static_cast<std::size_t>(result.identification.estimates.size())});
     return digest.value();

@@ -87,7 +87,11 @@ std::string write_results(const Study& study, const StudyResult& result, const R
         {"study", study.name}, {"method", "abbe identify"}, {"gauge", "ISO 230 conventions, see report"}};
     folder.write("errors.toml", errors_text(study.machine, errors, "errors.covariance.csv"));
     folder.write("errors.covariance.csv", covariance_text(study.machine, errors));
-    folder.write("residuals.csv", ready.residuals_csv ? *ready.residuals_csv : residuals_csv(study, result));
+    if (ready.residuals_csv) {
+      folder.write("residuals.csv", *ready.residuals_csv);
+    } else {
+      folder.write("residuals.csv", residuals_csv(study, result));
+    }
   }
   if (result.map) {
     const StudyMap& map = *result.map;
