@@ -21,7 +21,8 @@ inline constexpr std::size_t kLargestPowerSize = 9;
 /// Fourier series with at most this many harmonics are evaluated as powers of the cosine: P(cos) + sin Q(cos).
 inline constexpr std::size_t kMostHarmonicPowers = 8;
 
-/// One component of an error motion as a function of the scaled argument of its group.
+/// One component of an error motion as a function of the scaled argument of its group; of EA, EB and EC half of it,
+/// which the rotation needs fewer operations for.
 struct Series {
   int component = 0;     ///< 0 .. 5: EX .. EC
   std::size_t size = 0;  ///< power, chebyshev: coefficients; fourier: harmonics; pieces: intervals

@@ -1,4 +1,5 @@
 #include <cstring>
+#include <type_traits>
 
 #include "abbe/errors/chain_kernel_targets.h"
 
@@ -18,9 +19,10 @@ namespace {
 /// What the operations of a step are. Known to the compiler where it is the usual one, so that no vector asks.
 struct StepShape {
   bool rotary, inverted, error_first, has_errors, has_angles, first_order;
+  bool from_units;  ///< the first step, whose columns are unit vectors
 };
-StepShape shape_of(const AxisStep& step) {
-  return {step.rotary, step.inverted, step.error_first, step.has_errors, step.has_angles, step.first_order};
+StepShape shape_of(const AxisStep& step, bool from_units = false) {
+  return {step.rotary, step.inverted, step.error_first, step.has_errors, step.has_angles, step.first_order, from_units};
 }
 
 template <int kColumns, class Turn>
@@ -30,7 +32,11 @@ HWY_INLINE void apply_turns(const StepShape shape, const ErrorTurns<Turn>& e, co
     m.point = m.point - shift;
     turn_all_back(e, m);
   } else {
-    turn_all(e, m);
+    if constexpr (kColumns == 2 && std::is_same_v<Turn, Shears>) {
+      shape.from_units ? turn_units(e, m) : turn_all(e, m);
+    } else {
+      turn_all(e, m);
+    }
     m.point = m.point + shift;
   }
 }
@@ -45,7 +51,7 @@ HWY_INLINE void apply_error(const StepShape shape, const AxisLanes& lanes, std::
     m.point = shape.inverted ? m.point - shift : m.point + shift;
     return;
   }
-  const Vector3 angles = load(lanes.error + 3, k);
+  const Vector3 half_angles = load(lanes.error + 3, k), angles = half_angles + half_angles;
   if (shape.first_order) {
     if (shape.inverted) {
       m.point = first_order_inverse(angles, m.point - shift);
@@ -59,10 +65,10 @@ HWY_INLINE void apply_error(const StepShape shape, const AxisLanes& lanes, std::
   if (kLarge) {
     Moving<kColumns> far = m;
     apply_turns(shape, error_rotation(angles), shift, far);
-    apply_turns(shape, error_shears(angles), shift, m);
-    choose(are_large(angles), far, m);
+    apply_turns(shape, error_shears(half_angles), shift, m);
+    choose(are_large(half_angles), far, m);
   } else {
-    apply_turns(shape, error_shears(angles), shift, m);
+    apply_turns(shape, error_shears(half_angles), shift, m);
   }
 }
 
@@ -86,8 +92,7 @@ HWY_INLINE void apply_motion(const StepShape shape, const AxisStep& step, const 
 /// One vector of poses.
 template <int kColumns, bool kLarge>
 HWY_INLINE void pass_vector(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
-                            State& state) {
-  Moving<kColumns> m = moving_at<kColumns>(state, k);
+                            Moving<kColumns>& m) {
   if (shape.rotary || step.has_offsets) m.point = m.point - set3(step.before);
   if (!shape.has_errors) {
     apply_motion(shape, step, lanes, k, step.after, m);
@@ -101,12 +106,14 @@ HWY_INLINE void pass_vector(const StepShape shape, const AxisStep& step, const A
     if (shape.rotary) m.point = m.point + set3(step.after);
   }
   if (!shape.rotary && step.has_offsets) m.point = m.point + set3(step.after);
-  keep(m, state, k);
 }
 
 template <int kColumns>
-HWY_NOINLINE void pass_large_angles(const AxisStep& step, const AxisLanes& lanes, std::size_t k, State& state) {
-  pass_vector<kColumns, true>(shape_of(step), step, lanes, k, state);
+HWY_NOINLINE void pass_large_angles(const AxisStep& step, bool from_units, const AxisLanes& lanes, std::size_t k,
+                                    State& state) {
+  Moving<kColumns> m = moving_at<kColumns>(state, k);
+  pass_vector<kColumns, true>(shape_of(step, from_units), step, lanes, k, m);
+  keep(m, state, k);
 }
 
 template <int kColumns>
@@ -114,12 +121,20 @@ HWY_INLINE void pass_shape(const StepShape shape, const AxisStep& step, const Ax
                            State& state) {
   const bool turns = shape.has_errors && shape.has_angles && !shape.first_order;
   for (std::size_t k = 0; k < ends.count; k += hn::Lanes(Tag())) {
-    begin_vector<kColumns>(ends, k, state);
+    if (!shape.from_units) begin_vector<kColumns>(ends, k, state);
     // Apart, so that what is rare costs the rest no registers.
     if (turns && HWY_UNLIKELY(!hn::AllFalse(Tag(), are_large(load(lanes.error + 3, k))))) {
-      pass_large_angles<kColumns>(step, lanes, k, state);
+      if (shape.from_units) begin_vector<kColumns>(ends, k, state);
+      pass_large_angles<kColumns>(step, shape.from_units, lanes, k, state);
     } else {
-      pass_vector<kColumns, false>(shape, step, lanes, k, state);
+      Moving<kColumns> m = moving_at<kColumns>(state, k);
+      if (shape.from_units) m.point = first_point(ends, k);
+      pass_vector<kColumns, false>(shape, step, lanes, k, m);
+      if (ends.end != nullptr && k + hn::Lanes(Tag()) <= ends.count) {
+        write_results<kColumns>(ends, k, m, WriteWhole());
+        continue;
+      }
+      keep(m, state, k);
     }
     finish_vector<kColumns>(ends, k, state);
   }
@@ -129,9 +144,9 @@ HWY_NOINLINE void pass_any_axis(const AxisStep& step, const AxisLanes& lanes, co
   pass_shape<kColumns>(shape_of(step), step, lanes, ends, state);
 }
 /// Errors with angles, composed exactly in the order of ISO 230-1.
-template <int kColumns, bool kRotary, bool kInverted>
+template <int kColumns, bool kRotary, bool kInverted, bool kFromUnits = false>
 HWY_NOINLINE void pass_usual_axis(const AxisStep& step, const AxisLanes& lanes, const Ends& ends, State& state) {
-  constexpr StepShape kShape{kRotary, kInverted, kRotary == kInverted, true, true, false};
+  constexpr StepShape kShape{kRotary, kInverted, kRotary == kInverted, true, true, false, kFromUnits};
   pass_shape<kColumns>(kShape, step, lanes, ends, state);
 }
 
@@ -144,9 +159,12 @@ HWY_INLINE void pass_axis(const AxisStep& step, const AxisLanes& lanes, const En
   } else if (step.rotary) {
     step.inverted ? pass_usual_axis<kColumns, true, true>(step, lanes, ends, state)
                   : pass_usual_axis<kColumns, true, false>(step, lanes, ends, state);
+  } else if (step.inverted) {
+    pass_usual_axis<kColumns, false, true>(step, lanes, ends, state);
+  } else if (begins_with_units<kColumns>(ends)) {
+    pass_usual_axis<kColumns, false, false, kColumns == 2>(step, lanes, ends, state);
   } else {
-    step.inverted ? pass_usual_axis<kColumns, false, true>(step, lanes, ends, state)
-                  : pass_usual_axis<kColumns, false, false>(step, lanes, ends, state);
+    pass_usual_axis<kColumns, false, false>(step, lanes, ends, state);
   }
 }
 

@@ -128,6 +128,12 @@ std::size_t find_series(FunctionGroup& group, int component) {
   return group.series.size() - 1;
 }
 
+/// Numbers of a series from Series::first on.
+std::size_t number_count(Form form, std::size_t size) {
+  if (form == Form::fourier) return 2 * size + 1;
+  return form == Form::pieces ? 4 * size : size;
+}
+
 /// Derivatives of a Fritsch-Butland slope by the values at the node before, the node and the node after.
 struct SlopeWeights {
   double before = 0, here = 0, after = 0;
@@ -331,10 +337,14 @@ void FunctionCompiler::set_values(CompiledChain& chain, std::span<const double> 
   }
   for (const AxisStep& step : chain.steps) {
     for (const FunctionGroup& group : step.groups) {
-      if (group.form != Form::fourier) continue;
       for (const Series& series : group.series) {
-        if (series.size > kMostHarmonicPowers) continue;
-        set_harmonic_powers(&chain.numbers[series.first], series.size, &chain.numbers[series.powers]);
+        const std::span<double> of_series(&chain.numbers[series.first], number_count(group.form, series.size));
+        if (series.component >= 3) {
+          for (double& number : of_series) number *= 0.5;
+        }
+        if (group.form == Form::fourier && series.size <= kMostHarmonicPowers) {
+          set_harmonic_powers(of_series.data(), series.size, &chain.numbers[series.powers]);
+        }
       }
     }
   }

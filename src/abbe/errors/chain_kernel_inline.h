@@ -25,7 +25,7 @@ namespace HWY_NAMESPACE {
 struct AxisLanes {
   Lane position;
   Lane sine, cosine;  ///< of the command, rotary axes only
-  Lane error[6];      ///< EX .. EC, mm and rad
+  Lane error[6];      ///< EX, EY, EZ, mm; half of EA, EB, EC, rad
 };
 
 HWY_INLINE std::size_t whole_vectors(std::size_t count) {
@@ -293,13 +293,16 @@ inline HWY_NOINLINE void add_stated_errors(const CompiledChain& chain, const Axi
 inline HWY_NOINLINE void evaluate_axis(const CompiledChain& chain, const AxisStep& step, const double* commands,
                                        std::size_t count, AxisLanes& lanes, const Lane* factor) {
   const std::size_t width = hn::Lanes(Tag()), end = whole_vectors(count);
-  read_lane(commands, count, lanes.position);
   if (step.rotary) {
     for (std::size_t k = 0; k < end; k += width) {
-      const SineCosine turn_of_axis = sine_cosine(load(lanes.position.v + k));
+      const Vector q = read(commands, k, count);
+      const SineCosine turn_of_axis = sine_cosine(q);
+      store(q, lanes.position.v + k);
       store(turn_of_axis.sine, lanes.sine.v + k);
       store(turn_of_axis.cosine, lanes.cosine.v + k);
     }
+  } else {
+    read_lane(commands, count, lanes.position);
   }
   if (!step.has_errors) return;
   unsigned written = 0;

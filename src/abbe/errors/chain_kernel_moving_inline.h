@@ -54,6 +54,24 @@ HWY_INLINE void turn_all_back(const ErrorTurns<Turn>& e, Moving<kColumns>& m) {
   for (int i = 0; i < kColumns; ++i) turn_back(e.a, m.column[i].y, m.column[i].z);
 }
 
+/// The same where the two columns are unit vectors before: ex and ey.
+HWY_INLINE void turn_units(const ErrorTurns<Shears>& e, Moving<2>& m) {
+  turn(e.a, m.point.y, m.point.z);
+  turn(e.b, m.point.z, m.point.x);
+  turn(e.c, m.point.x, m.point.y);
+  const Vector one = set(1.0);
+  Vector3& ex = m.column[0];
+  ex.z = hn::Neg(e.b.sine);
+  ex.x = hn::NegMulAdd(e.b.half_tangent, e.b.sine, one);
+  ex.y = hn::Mul(e.c.sine, ex.x);
+  ex.x = hn::NegMulAdd(e.c.half_tangent, ex.y, ex.x);
+  Vector3& ey = m.column[1];
+  ey.x = hn::Mul(e.b.sine, e.a.sine);
+  ey.z = hn::NegMulAdd(e.b.half_tangent, ey.x, e.a.sine);
+  ey.y = hn::NegMulAdd(e.a.half_tangent, e.a.sine, one);
+  turn(e.c, ey.x, ey.y);
+}
+
 template <class Mask>
 HWY_INLINE Vector3 choose(Mask mask, const Vector3& yes, const Vector3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
@@ -88,17 +106,29 @@ struct Ends {
   Results results;
 };
 
+/// Whether the columns are ex and ey.
 template <int kColumns>
-HWY_INLINE void begin_vector(const Ends& ends, std::size_t k, State& state) {
-  if (ends.start == nullptr) return;
+HWY_INLINE bool begins_with_units(const Ends& ends) {
+  return kColumns == 2 && ends.start != nullptr && !ends.start->turns;
+}
+template <int kColumns>
+HWY_INLINE void begin_columns(const Ends& ends, std::size_t k, State& state) {
+  for (int i = 0; i < kColumns; ++i) {
+    const double* r = ends.start->rotation + ends.first_column + i;
+    store({set(r[0]), set(r[3]), set(r[6])}, state.column[i], k);
+  }
+}
+HWY_INLINE Vector3 first_point(const Ends& ends, std::size_t k) {
   const ConstantTransform& start = *ends.start;
   Vector3 p = {read(ends.from.x, k, ends.count), read(ends.from.y, k, ends.count), read(ends.from.z, k, ends.count)};
   if (start.turns) p = times(set_matrix(start.rotation), p);
-  store(p + set3(start.offset), state.point, k);
-  for (int i = 0; i < kColumns; ++i) {
-    const double* r = start.rotation + ends.first_column + i;
-    store({set(r[0]), set(r[3]), set(r[6])}, state.column[i], k);
-  }
+  return p + set3(start.offset);
+}
+template <int kColumns>
+HWY_INLINE void begin_vector(const Ends& ends, std::size_t k, State& state) {
+  if (ends.start == nullptr) return;
+  store(first_point(ends, k), state.point, k);
+  begin_columns<kColumns>(ends, k, state);
 }
 
 struct WriteWhole {
@@ -111,20 +141,20 @@ struct WriteSome {
 };
 
 template <int kColumns, class Write>
-HWY_INLINE void write_results(const Ends& ends, std::size_t k, const State& state, Write write) {
+HWY_INLINE void write_results(const Ends& ends, std::size_t k, const Moving<kColumns>& m, Write write) {
   const ConstantTransform& end = *ends.end;
   const auto write3 = [&](const Vector3& v, double* const* out) HWY_ATTR {
     write(v.x, out[0] + k);
     write(v.y, out[1] + k);
     write(v.z, out[2] + k);
   };
-  Vector3 p = load(state.point, k);
+  Vector3 p = m.point;
   if (end.turns) p = times(set_matrix(end.rotation), p);
   write3(p + set3(end.offset), ends.results.point);
   if constexpr (kColumns > 0) {
     Vector3 column[3];
     for (int i = 0; i < kColumns; ++i) {
-      column[i] = load(state.column[i], k);
+      column[i] = m.column[i];
       if (end.turns) column[i] = times(set_matrix(end.rotation), column[i]);
     }
     if constexpr (kColumns == 2) column[2] = cross(column[0], column[1]);
@@ -133,13 +163,13 @@ HWY_INLINE void write_results(const Ends& ends, std::size_t k, const State& stat
 }
 template <int kColumns>
 HWY_NOINLINE void finish_last_vector(const Ends& ends, std::size_t k, const State& state) {
-  write_results<kColumns>(ends, k, state, WriteSome{ends.count - k});
+  write_results<kColumns>(ends, k, moving_at<kColumns>(state, k), WriteSome{ends.count - k});
 }
 template <int kColumns>
 HWY_INLINE void finish_vector(const Ends& ends, std::size_t k, const State& state) {
   if (ends.end == nullptr) return;
   if (HWY_LIKELY(k + hn::Lanes(Tag()) <= ends.count)) {
-    write_results<kColumns>(ends, k, state, WriteWhole());
+    write_results<kColumns>(ends, k, moving_at<kColumns>(state, k), WriteWhole());
   } else {
     finish_last_vector<kColumns>(ends, k, state);
   }

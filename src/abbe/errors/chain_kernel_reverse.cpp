@@ -22,7 +22,7 @@ namespace {
 HWY_NOINLINE void take_back_error(const AxisStep& step, std::size_t rows, std::size_t end, Sweep& s) {
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     const Vector3 reference = set3(step.reference), shift = load(s.lanes.error, k);
-    const Vector3 angles = load(s.lanes.error + 3, k);
+    const Vector3 half_angles = load(s.lanes.error + 3, k), angles = half_angles + half_angles;
     const Vector3 out = load(s.point, k);
     const ErrorRotation e = error_rotation(angles);
     if (step.first_order) {

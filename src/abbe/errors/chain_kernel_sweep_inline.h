@@ -98,7 +98,8 @@ inline HWY_NOINLINE void add_factors_of_errors(const CompiledChain& chain, const
       for (std::size_t row = 0; row < rows; ++row) {
         double* sum = states.by_factor[row][group.state].v;
         for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
-          const Vector channel = load(s.channel[row][series.component].v + k);
+          Vector channel = load(s.channel[row][series.component].v + k);
+          if (series.component >= 3) channel = hn::Add(channel, channel);
           store(hn::MulAdd(channel, load(value[series.component].v + k), load(sum + k)), sum + k);
         }
       }

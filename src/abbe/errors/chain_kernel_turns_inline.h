@@ -82,8 +82,9 @@ HWY_INLINE void turn_back(const SineCosine& a, Vector& u, Vector& v) {
 
 /// Sine and cosine, absolute error below 2e-16 for |x| up to 1e6 rad.
 ///
-/// Reduction by pi/2 in three parts of 33 bits, so that the products are exact without FMA too; polynomials of
-/// degree 13 and 14 on |r| <= pi/4. Source: the argument reduction of Cody and Waite (1980); coefficients of fdlibm.
+/// Reduction by pi/2 in two parts of 53 bits, whose products a fused operation rounds once; without one, in three parts
+/// of 33 bits, whose products are exact. Polynomials of degree 13 and 14 on |r| <= pi/4. Source: the argument reduction
+/// of Cody and Waite (1980); coefficients of fdlibm.
 HWY_INLINE SineCosine sine_cosine(Vector x) {
   const Tag d;
   const IndexTag di;
@@ -91,9 +92,15 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
   const Vector rounder = set(6755399441055744.0);
   const Vector rounded = hn::MulAdd(x, set(6.36619772367581382433e-01), rounder);
   const Vector n = hn::Sub(rounded, rounder);
-  Vector r = hn::NegMulAdd(n, set(1.57079632673412561417e+00), x);
-  r = hn::NegMulAdd(n, set(6.07710050630396597660e-11), r);
-  r = hn::NegMulAdd(n, set(2.02226624879595063154e-21), r);
+  Vector r;
+  if constexpr (HWY_NATIVE_FMA) {
+    r = hn::NegMulAdd(n, set(0x1.921fb54442d18p+0), x);
+    r = hn::NegMulAdd(n, set(0x1.1a62633145c07p-54), r);
+  } else {
+    r = hn::NegMulAdd(n, set(1.57079632673412561417e+00), x);
+    r = hn::NegMulAdd(n, set(6.07710050630396597660e-11), r);
+    r = hn::NegMulAdd(n, set(2.02226624879595063154e-21), r);
+  }
   const Vector z = hn::Mul(r, r);
   // Pairs of terms first: a chain of all terms would be longer than what the processor can overlap.
   const Vector zz = hn::Mul(z, z);
@@ -165,18 +172,20 @@ HWY_INLINE bool has_large_angles(const Vector3& angles) {
   const Vector3 z = squares_of(angles);
   return !hn::AllFalse(Tag(), hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16)));
 }
-/// Whether any pose of the vector has angles that are too large for error_shears(); decided per pose by are_large().
-HWY_INLINE auto are_large(const Vector3& angles) {
-  const Vector3 z = squares_of(angles);
-  return hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-20));
+/// Poses whose angles are too large for error_shears().
+HWY_INLINE auto are_large(const Vector3& half_angles) {
+  const Vector3 z = squares_of(half_angles);
+  return hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-22));
 }
-/// Series for angles below 1/1024 rad (next terms below 1e-17).
-HWY_INLINE Shears short_shears(Vector x, Vector z) {
-  return {hn::Mul(x, hn::MulAdd(z, set(1.0 / 24), set(0.5))), hn::Mul(x, hn::MulAdd(z, set(-1.0 / 6), set(1.0)))};
+/// Series for angles below 1/1024 rad (next terms below 1e-17), from half the angle h and its square: h + h^3 / 3 and
+/// 2 h - 4 h^3 / 3.
+HWY_INLINE Shears short_shears(Vector h, Vector z) {
+  const Vector cube = hn::Mul(h, z);
+  return {hn::MulAdd(cube, set(1.0 / 3), h), hn::MulAdd(cube, set(-4.0 / 3), hn::Add(h, h))};
 }
-HWY_INLINE ErrorTurns<Shears> error_shears(const Vector3& angles) {
-  const Vector3 z = squares_of(angles);
-  return {short_shears(angles.x, z.x), short_shears(angles.y, z.y), short_shears(angles.z, z.z)};
+HWY_INLINE ErrorTurns<Shears> error_shears(const Vector3& half_angles) {
+  const Vector3 z = squares_of(half_angles);
+  return {short_shears(half_angles.x, z.x), short_shears(half_angles.y, z.y), short_shears(half_angles.z, z.z)};
 }
 HWY_INLINE ErrorRotation short_error_rotation(const Vector3& angles) {
   const Vector3 z = squares_of(angles);
@@ -219,13 +228,12 @@ HWY_INLINE Matrix3 rotation(const AxisStep& step, const SineCosine& a) {
   const Vector xs = hn::Mul(set(step.signed_direction[0]), a.sine);
   const Vector ys = hn::Mul(set(step.signed_direction[1]), a.sine);
   const Vector zs = hn::Mul(set(step.signed_direction[2]), a.sine);
-  const Vector xy = set(step.direction_products[3]), xz = set(step.direction_products[4]);
-  const Vector yz = set(step.direction_products[5]);
-  return {
-      {hn::MulAdd(rest, set(step.direction_products[0]), a.cosine), hn::MulSub(rest, xy, zs), hn::MulAdd(rest, xz, ys)},
-      {hn::MulAdd(rest, xy, zs), hn::MulAdd(rest, set(step.direction_products[1]), a.cosine), hn::MulSub(rest, yz, xs)},
-      {hn::MulSub(rest, xz, ys), hn::MulAdd(rest, yz, xs),
-       hn::MulAdd(rest, set(step.direction_products[2]), a.cosine)}};
+  // Products and sums apart: other units add than multiply.
+  const Vector xy = hn::Mul(rest, set(step.direction_products[3])), xz = hn::Mul(rest, set(step.direction_products[4]));
+  const Vector yz = hn::Mul(rest, set(step.direction_products[5]));
+  return {{hn::MulAdd(rest, set(step.direction_products[0]), a.cosine), hn::Sub(xy, zs), hn::Add(xz, ys)},
+          {hn::Add(xy, zs), hn::MulAdd(rest, set(step.direction_products[1]), a.cosine), hn::Sub(yz, xs)},
+          {hn::Sub(xz, ys), hn::Add(yz, xs), hn::MulAdd(rest, set(step.direction_products[2]), a.cosine)}};
 }
 
 /// Sine and cosine of q + zero position from those of q.

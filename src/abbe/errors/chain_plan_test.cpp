@@ -126,31 +126,50 @@ TEST(ChainPlan, OneColumnOfTheRotationMayBeWantedAlone) {
   }
 }
 
+void expect_the_same_for_any_number_of_poses(const Case& c, std::uint64_t seed) {
+  const ChainPlan plan(c.machine, c.errors, Body::tool, Body::workpiece);
+  RandomStream random(seed);
+  Batch all(c.machine, 300, random);
+  all.transform(plan);
+  for (std::size_t count = 1; count <= 300; count += count < 40 ? 1 : 13) {
+    Batch some = all;
+    for (std::vector<double>& v : some.seen) std::fill(v.begin(), v.end(), -1e300);
+    std::vector<const double*> pointers;
+    for (const std::vector<double>& v : some.commands) pointers.push_back(v.data() + (300 - count));
+    const ConstPointArrays start{&some.start[0][300 - count], &some.start[1][300 - count], &some.start[2][300 - count]};
+    plan.transform({pointers, count}, start, some.seen_arrays(), some.rotation_arrays(), some.covered.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(some.seen[i][k], all.seen[i][300 - count + k]) << count;
+      for (std::size_t i = 0; i < 9; ++i) ASSERT_EQ(some.rotation[i][k], all.rotation[i][300 - count + k]) << count;
+    }
+    if (count < 300) {
+      EXPECT_EQ(some.seen[0][count], -1e300) << "wrote past the end";
+    }
+  }
+}
+
 TEST(ChainPlan, DoesNotDependOnHowManyPosesAreEvaluatedTogether) {
   for (std::uint64_t seed = 500; seed < 508; ++seed) {
     // Angles around the limits of the short series, so that neighbours take different ways.
-    const Case c = random_case(seed, seed < 504 ? 0.4 : 0.1);
-    const ChainPlan plan(c.machine, c.errors, Body::tool, Body::workpiece);
-    RandomStream random(seed);
-    Batch all(c.machine, 300, random);
-    all.transform(plan);
-    for (std::size_t count = 1; count <= 300; count += count < 40 ? 1 : 13) {
-      Batch some = all;
-      for (std::vector<double>& v : some.seen) std::fill(v.begin(), v.end(), -1e300);
-      std::vector<const double*> pointers;
-      for (const std::vector<double>& v : some.commands) pointers.push_back(v.data() + (300 - count));
-      const ConstPointArrays start{&some.start[0][300 - count], &some.start[1][300 - count],
-                                   &some.start[2][300 - count]};
-      plan.transform({pointers, count}, start, some.seen_arrays(), some.rotation_arrays(), some.covered.data());
-      for (std::size_t k = 0; k < count; ++k) {
-        for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(some.seen[i][k], all.seen[i][300 - count + k]) << count;
-        for (std::size_t i = 0; i < 9; ++i) ASSERT_EQ(some.rotation[i][k], all.rotation[i][300 - count + k]) << count;
-      }
-      if (count < 300) {
-        EXPECT_EQ(some.seen[0][count], -1e300) << "wrote past the end";
-      }
+    expect_the_same_for_any_number_of_poses(random_case(seed, seed < 504 ? 0.4 : 0.1), seed);
+  }
+}
+
+TEST(ChainPlan, StartsFromTheToolInTheSameWayForAnyNumberOfPoses) {
+  Case c;
+  RandomStream random(3);
+  for (const char* name : {"X", "Y", "Z"}) {
+    const std::size_t axis = c.machine.axes.size();
+    c.machine.axes.push_back({name, AxisKind::linear, ChainSide::tool, false, direction_from_letter(name[0])});
+    c.machine.axes.back().travel_min = -200;
+    c.machine.axes.back().travel_max = 300;
+    const Basis basis{.kind = BasisKind::legendre, .order = 2, .from = -200, .to = 300};
+    for (int k = 3; k < 6; ++k) {
+      // Up to 2 mrad: on both sides of the limit of the short series.
+      c.errors.motions.push_back({axis, static_cast<Component>(k), basis, {0, 1e-3, random.uniform(-1e-3, 1e-3)}, {}});
     }
   }
+  expect_the_same_for_any_number_of_poses(c, 3);
 }
 
 TEST(ChainPlan, AddsAnyNumberOfHarmonics) {
