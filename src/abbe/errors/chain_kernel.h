@@ -21,8 +21,9 @@ inline constexpr std::size_t kLargestPowerSize = 9;
 /// Fourier series with at most this many harmonics are evaluated as powers of the cosine: P(cos) + sin Q(cos).
 inline constexpr std::size_t kMostHarmonicPowers = 8;
 
-/// One component of an error motion as a function of the scaled argument of its group; of EA, EB and EC half of it,
-/// which the rotation needs fewer operations for.
+/// One component of an error motion, mm or rad, as a function of the scaled argument of its group.
+///
+/// Series of EA, EB and EC give half of the angle, from which a rotation takes fewer operations.
 struct Series {
   int component = 0;     ///< 0 .. 5: EX .. EC
   std::size_t size = 0;  ///< power, chebyshev: coefficients; fourier: harmonics; pieces: intervals
@@ -30,6 +31,8 @@ struct Series {
       0;  ///< index into CompiledChain::numbers; power, chebyshev: c0, c1, ...; fourier: mean, cos1, sin1,
           ///< ...; pieces: four powers of the local position per interval
   std::size_t powers = 0;  ///< fourier with few harmonics: index into numbers; [size + 1] of P, [size] of Q
+
+  bool gives_half() const { return component >= 3; }
 };
 
 /// Series of one axis that share their argument, so that it (or its sine, or its interval) is computed once.

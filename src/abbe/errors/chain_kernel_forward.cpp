@@ -19,7 +19,7 @@ namespace {
 /// What the operations of a step are. Known to the compiler where it is the usual one, so that no vector asks.
 struct StepShape {
   bool rotary, inverted, error_first, has_errors, has_angles, first_order;
-  bool from_units;  ///< the first step, whose columns are unit vectors
+  bool from_units;  ///< the first step, with columns that are ex and ey before it
 };
 StepShape shape_of(const AxisStep& step, bool from_units = false) {
   return {step.rotary, step.inverted, step.error_first, step.has_errors, step.has_angles, step.first_order, from_units};
@@ -127,9 +127,14 @@ HWY_INLINE void pass_shape(const StepShape shape, const AxisStep& step, const Ax
       if (shape.from_units) begin_vector<kColumns>(ends, k, state);
       pass_large_angles<kColumns>(step, shape.from_units, lanes, k, state);
     } else {
-      Moving<kColumns> m = moving_at<kColumns>(state, k);
-      if (shape.from_units) m.point = first_point(ends, k);
+      Moving<kColumns> m;
+      if (shape.from_units) {
+        m.point = first_point(ends, k);
+      } else {
+        m = moving_at<kColumns>(state, k);
+      }
       pass_vector<kColumns, false>(shape, step, lanes, k, m);
+      // From registers: a way through the state would cost a hundredth of the time of a pose.
       if (ends.end != nullptr && k + hn::Lanes(Tag()) <= ends.count) {
         write_results<kColumns>(ends, k, m, WriteWhole());
         continue;

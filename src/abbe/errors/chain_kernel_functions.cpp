@@ -339,7 +339,7 @@ void FunctionCompiler::set_values(CompiledChain& chain, std::span<const double> 
     for (const FunctionGroup& group : step.groups) {
       for (const Series& series : group.series) {
         const std::span<double> of_series(&chain.numbers[series.first], number_count(group.form, series.size));
-        if (series.component >= 3) {
+        if (series.gives_half()) {
           for (double& number : of_series) number *= 0.5;
         }
         if (group.form == Form::fourier && series.size <= kMostHarmonicPowers) {

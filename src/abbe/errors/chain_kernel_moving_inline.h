@@ -54,7 +54,7 @@ HWY_INLINE void turn_all_back(const ErrorTurns<Turn>& e, Moving<kColumns>& m) {
   for (int i = 0; i < kColumns; ++i) turn_back(e.a, m.column[i].y, m.column[i].z);
 }
 
-/// The same where the two columns are unit vectors before: ex and ey.
+/// turn_all() where the columns were ex and ey before: they are only written, with half of the operations.
 HWY_INLINE void turn_units(const ErrorTurns<Shears>& e, Moving<2>& m) {
   turn(e.a, m.point.y, m.point.z);
   turn(e.b, m.point.z, m.point.x);
@@ -106,7 +106,7 @@ struct Ends {
   Results results;
 };
 
-/// Whether the columns are ex and ey.
+/// Whether a step is the first one and the columns before it are ex and ey.
 template <int kColumns>
 HWY_INLINE bool begins_with_units(const Ends& ends) {
   return kColumns == 2 && ends.start != nullptr && !ends.start->turns;
@@ -118,6 +118,7 @@ HWY_INLINE void begin_columns(const Ends& ends, std::size_t k, State& state) {
     store({set(r[0]), set(r[3]), set(r[6])}, state.column[i], k);
   }
 }
+/// The caller's points in the machine frame with all axes at zero, mm.
 HWY_INLINE Vector3 first_point(const Ends& ends, std::size_t k) {
   const ConstantTransform& start = *ends.start;
   Vector3 p = {read(ends.from.x, k, ends.count), read(ends.from.y, k, ends.count), read(ends.from.z, k, ends.count)};

@@ -78,7 +78,7 @@ inline HWY_NOINLINE void evaluate_slopes(const CompiledChain& chain, const AxisS
         } else {
           value = hn::Mul(polynomial_slope(series, group.form, c, s), set(group.scale));
         }
-        if (series.component >= 3) value = hn::Add(value, value);
+        if (series.gives_half()) value = hn::Add(value, value);
         if (group.state != kNoState) value = hn::Mul(value, load(factor[group.state].v + k));
         double* out = slope[series.component].v + k;
         store(hn::Add(load(out), value), out);

@@ -99,7 +99,7 @@ inline HWY_NOINLINE void add_factors_of_errors(const CompiledChain& chain, const
         double* sum = states.by_factor[row][group.state].v;
         for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
           Vector channel = load(s.channel[row][series.component].v + k);
-          if (series.component >= 3) channel = hn::Add(channel, channel);
+          if (series.gives_half()) channel = hn::Add(channel, channel);
           store(hn::MulAdd(channel, load(value[series.component].v + k), load(sum + k)), sum + k);
         }
       }
