@@ -19,10 +19,19 @@ namespace {
 /// What the operations of a step are. Known to the compiler where it is the usual one, so that no vector asks.
 struct StepShape {
   bool rotary, inverted, error_first, has_errors, has_angles, first_order;
-  bool from_units;  ///< the first step, with columns that are ex and ey before it
+  bool from_units;          ///< the first step, with columns that are ex and ey before it
+  bool may_begin, may_end;  ///< may be the first step, the last step
 };
 StepShape shape_of(const AxisStep& step, bool from_units = false) {
-  return {step.rotary, step.inverted, step.error_first, step.has_errors, step.has_angles, step.first_order, from_units};
+  return {.rotary = step.rotary,
+          .inverted = step.inverted,
+          .error_first = step.error_first,
+          .has_errors = step.has_errors,
+          .has_angles = step.has_angles,
+          .first_order = step.first_order,
+          .from_units = from_units,
+          .may_begin = true,
+          .may_end = true};
 }
 
 template <int kColumns, class Turn>
@@ -74,54 +83,56 @@ HWY_INLINE void apply_error(const StepShape shape, const AxisLanes& lanes, std::
 
 /// The point is relative to the centre of a rotary axis; `after` is added to it.
 template <int kColumns>
-HWY_INLINE void apply_motion(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
-                             const double* after, Moving<kColumns>& m) {
+HWY_INLINE void apply_motion(const StepShape shape, const StepVectors& step, const AxisLanes& lanes, std::size_t k,
+                             const Vector3& after, Moving<kColumns>& m) {
   if (!shape.rotary) {
-    const Vector way = hn::Add(load(lanes.position.v + k), set(step.zero_position));
-    m.point = {hn::MulAdd(way, set(step.signed_direction[0]), m.point.x),
-               hn::MulAdd(way, set(step.signed_direction[1]), m.point.y),
-               hn::MulAdd(way, set(step.signed_direction[2]), m.point.z)};
+    const Vector way = hn::Add(load(lanes.position.v + k), step.zero_position);
+    m.point = {hn::MulAdd(way, step.signed_direction.x, m.point.x), hn::MulAdd(way, step.signed_direction.y, m.point.y),
+               hn::MulAdd(way, step.signed_direction.z, m.point.z)};
     return;
   }
   const SineCosine angle = motion_angle(step, {load(lanes.sine.v + k), load(lanes.cosine.v + k)});
   const Matrix3 r = rotation(step, angle);
-  m.point = times_plus(r, m.point, set3(after));
+  m.point = times_plus(r, m.point, after);
   for (int i = 0; i < kColumns; ++i) m.column[i] = times(r, m.column[i]);
 }
 
 /// One vector of poses.
 template <int kColumns, bool kLarge>
-HWY_INLINE void pass_vector(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, std::size_t k,
+HWY_INLINE void pass_vector(const StepShape shape, const StepVectors& step, const AxisLanes& lanes, std::size_t k,
                             Moving<kColumns>& m) {
-  if (shape.rotary || step.has_offsets) m.point = m.point - set3(step.before);
+  if (shape.rotary || step.has_offsets) m.point = m.point - step.before;
   if (!shape.has_errors) {
     apply_motion(shape, step, lanes, k, step.after, m);
   } else if (shape.error_first) {
     apply_error<kColumns, kLarge>(shape, lanes, k, m);
-    if (shape.rotary) m.point = m.point + set3(step.between);
+    if (shape.rotary) m.point = m.point + step.between;
     apply_motion(shape, step, lanes, k, step.after, m);
   } else {
     apply_motion(shape, step, lanes, k, step.between, m);
     apply_error<kColumns, kLarge>(shape, lanes, k, m);
-    if (shape.rotary) m.point = m.point + set3(step.after);
+    if (shape.rotary) m.point = m.point + step.after;
   }
-  if (!shape.rotary && step.has_offsets) m.point = m.point + set3(step.after);
+  if (!shape.rotary && step.has_offsets) m.point = m.point + step.after;
 }
 
 template <int kColumns>
 HWY_NOINLINE void pass_large_angles(const AxisStep& step, bool from_units, const AxisLanes& lanes, std::size_t k,
                                     State& state) {
   Moving<kColumns> m = moving_at<kColumns>(state, k);
-  pass_vector<kColumns, true>(shape_of(step, from_units), step, lanes, k, m);
+  pass_vector<kColumns, true>(shape_of(step, from_units), vectors_of(step), lanes, k, m);
   keep(m, state, k);
 }
 
 template <int kColumns>
-HWY_INLINE void pass_shape(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, const Ends& ends,
+HWY_INLINE void pass_shape(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, const Ends& caller_ends,
                            State& state) {
+  const StepVectors vectors = vectors_of(step);
+  const Ends ends = caller_ends;  // for the same reason
+  const EndVectors end_vectors = vectors_of(ends);
   const bool turns = shape.has_errors && shape.has_angles && !shape.first_order;
   for (std::size_t k = 0; k < ends.count; k += hn::Lanes(Tag())) {
-    if (!shape.from_units) begin_vector<kColumns>(ends, k, state);
+    if (shape.may_begin && !shape.from_units) begin_vector<kColumns>(ends, k, state);
     // Apart, so that what is rare costs the rest no registers.
     if (turns && HWY_UNLIKELY(!hn::AllFalse(Tag(), are_large(load(lanes.error + 3, k))))) {
       if (shape.from_units) begin_vector<kColumns>(ends, k, state);
@@ -129,30 +140,48 @@ HWY_INLINE void pass_shape(const StepShape shape, const AxisStep& step, const Ax
     } else {
       Moving<kColumns> m;
       if (shape.from_units) {
-        m.point = first_point(ends, k);
+        m.point = first_point(ends, end_vectors, k, false);
       } else {
         m = moving_at<kColumns>(state, k);
       }
-      pass_vector<kColumns, false>(shape, step, lanes, k, m);
+      pass_vector<kColumns, false>(shape, vectors, lanes, k, m);
       // From registers: a way through the state would cost a hundredth of the time of a pose.
-      if (ends.end != nullptr && k + hn::Lanes(Tag()) <= ends.count) {
-        write_results<kColumns>(ends, k, m, WriteWhole());
+      if (shape.may_end && ends.end != nullptr && k + hn::Lanes(Tag()) <= ends.count) {
+        write_results<kColumns>(ends, end_vectors, k, m, WriteWhole());
         continue;
       }
       keep(m, state, k);
     }
-    finish_vector<kColumns>(ends, k, state);
+    if (shape.may_end) finish_vector<kColumns>(ends, k, state);
   }
 }
 template <int kColumns>
 HWY_NOINLINE void pass_any_axis(const AxisStep& step, const AxisLanes& lanes, const Ends& ends, State& state) {
   pass_shape<kColumns>(shape_of(step), step, lanes, ends, state);
 }
-/// Errors with angles, composed exactly in the order of ISO 230-1.
-template <int kColumns, bool kRotary, bool kInverted, bool kFromUnits = false>
-HWY_NOINLINE void pass_usual_axis(const AxisStep& step, const AxisLanes& lanes, const Ends& ends, State& state) {
-  constexpr StepShape kShape{kRotary, kInverted, kRotary == kInverted, true, true, false, kFromUnits};
+/// Errors with angles, composed exactly in the order of ISO 230-1; where in the chain is known too.
+template <int kColumns, bool kRotary, bool kInverted, bool kMayBegin, bool kMayEnd, bool kFromUnits>
+HWY_NOINLINE void pass_usual_axis_there(const AxisStep& step, const AxisLanes& lanes, const Ends& ends, State& state) {
+  constexpr StepShape kShape{.rotary = kRotary,
+                             .inverted = kInverted,
+                             .error_first = kRotary == kInverted,
+                             .has_errors = true,
+                             .has_angles = true,
+                             .first_order = false,
+                             .from_units = kFromUnits,
+                             .may_begin = kMayBegin,
+                             .may_end = kMayEnd};
   pass_shape<kColumns>(kShape, step, lanes, ends, state);
+}
+template <int kColumns, bool kRotary, bool kInverted, bool kFromUnits = false>
+HWY_INLINE void pass_usual_axis(const AxisStep& step, const AxisLanes& lanes, const Ends& ends, State& state) {
+  if (ends.start != nullptr) {
+    pass_usual_axis_there<kColumns, kRotary, kInverted, true, true, kFromUnits>(step, lanes, ends, state);
+  } else if (ends.end != nullptr) {
+    pass_usual_axis_there<kColumns, kRotary, kInverted, false, true, false>(step, lanes, ends, state);
+  } else {
+    pass_usual_axis_there<kColumns, kRotary, kInverted, false, false, false>(step, lanes, ends, state);
+  }
 }
 
 template <int kColumns>
@@ -246,7 +275,12 @@ int only_column(const RotationArrays& rotation) {
 void transform_with(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
                     const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
                     std::uint8_t* covered, const Lane* factor) {
-  Ends ends{count, &chain.start, &chain.end, {start.x + first, start.y + first, start.z + first}, 0, {}};
+  Ends ends{.count = count,
+            .start = &chain.start,
+            .end = &chain.end,
+            .from = {start.x + first, start.y + first, start.z + first},
+            .first_column = 0,
+            .results = {}};
   ends.results.point[0] = seen.x + first;
   ends.results.point[1] = seen.y + first;
   ends.results.point[2] = seen.z + first;

@@ -294,12 +294,22 @@ inline HWY_NOINLINE void evaluate_axis(const CompiledChain& chain, const AxisSte
                                        std::size_t count, AxisLanes& lanes, const Lane* factor) {
   const std::size_t width = hn::Lanes(Tag()), end = whole_vectors(count);
   if (step.rotary) {
-    for (std::size_t k = 0; k < end; k += width) {
-      const Vector q = read(commands, k, count);
-      const SineCosine turn_of_axis = sine_cosine(q);
+    const auto keep = [&](Vector q, const SineCosine& turn_of_axis, std::size_t k) HWY_ATTR {
       store(q, lanes.position.v + k);
       store(turn_of_axis.sine, lanes.sine.v + k);
       store(turn_of_axis.cosine, lanes.cosine.v + k);
+    };
+    std::size_t k = 0;
+    for (; k + 2 * width <= count; k += 2 * width) {
+      const Vector q[2] = {hn::LoadU(Tag(), commands + k), hn::LoadU(Tag(), commands + k + width)};
+      SineCosine turns[2];
+      sines_cosines<2>(q, turns);
+      keep(q[0], turns[0], k);
+      keep(q[1], turns[1], k + width);
+    }
+    for (; k < end; k += width) {
+      const Vector q = read(commands, k, count);
+      keep(q, sine_cosine(q), k);
     }
   } else {
     read_lane(commands, count, lanes.position);

@@ -106,6 +106,17 @@ struct Ends {
   Results results;
 };
 
+/// What a loop needs of the ends besides, made once before it for the reason of StepVectors.
+struct EndVectors {
+  Vector3 start_offset, end_offset;  ///< of the chain, mm
+  bool end_turns;                    ///< whether the chain ends with a rotation
+};
+HWY_INLINE EndVectors vectors_of(const Ends& ends) {
+  return {.start_offset = ends.start != nullptr ? set3(ends.start->offset) : zero3(),
+          .end_offset = ends.end != nullptr ? set3(ends.end->offset) : zero3(),
+          .end_turns = ends.end != nullptr && ends.end->turns};
+}
+
 /// Whether a step is the first one and the columns before it are ex and ey.
 template <int kColumns>
 HWY_INLINE bool begins_with_units(const Ends& ends) {
@@ -119,16 +130,15 @@ HWY_INLINE void begin_columns(const Ends& ends, std::size_t k, State& state) {
   }
 }
 /// The caller's points in the machine frame with all axes at zero, mm.
-HWY_INLINE Vector3 first_point(const Ends& ends, std::size_t k) {
-  const ConstantTransform& start = *ends.start;
+HWY_INLINE Vector3 first_point(const Ends& ends, const EndVectors& vectors, std::size_t k, bool turns) {
   Vector3 p = {read(ends.from.x, k, ends.count), read(ends.from.y, k, ends.count), read(ends.from.z, k, ends.count)};
-  if (start.turns) p = times(set_matrix(start.rotation), p);
-  return p + set3(start.offset);
+  if (turns) p = times(set_matrix(ends.start->rotation), p);
+  return p + vectors.start_offset;
 }
 template <int kColumns>
 HWY_INLINE void begin_vector(const Ends& ends, std::size_t k, State& state) {
   if (ends.start == nullptr) return;
-  store(first_point(ends, k), state.point, k);
+  store(first_point(ends, vectors_of(ends), k, ends.start->turns), state.point, k);
   begin_columns<kColumns>(ends, k, state);
 }
 
@@ -142,21 +152,21 @@ struct WriteSome {
 };
 
 template <int kColumns, class Write>
-HWY_INLINE void write_results(const Ends& ends, std::size_t k, const Moving<kColumns>& m, Write write) {
-  const ConstantTransform& end = *ends.end;
+HWY_INLINE void write_results(const Ends& ends, const EndVectors& vectors, std::size_t k, const Moving<kColumns>& m,
+                              Write write) {
   const auto write3 = [&](const Vector3& v, double* const* out) HWY_ATTR {
     write(v.x, out[0] + k);
     write(v.y, out[1] + k);
     write(v.z, out[2] + k);
   };
   Vector3 p = m.point;
-  if (end.turns) p = times(set_matrix(end.rotation), p);
-  write3(p + set3(end.offset), ends.results.point);
+  if (vectors.end_turns) p = times(set_matrix(ends.end->rotation), p);
+  write3(p + vectors.end_offset, ends.results.point);
   if constexpr (kColumns > 0) {
     Vector3 column[3];
     for (int i = 0; i < kColumns; ++i) {
       column[i] = m.column[i];
-      if (end.turns) column[i] = times(set_matrix(end.rotation), column[i]);
+      if (vectors.end_turns) column[i] = times(set_matrix(ends.end->rotation), column[i]);
     }
     if constexpr (kColumns == 2) column[2] = cross(column[0], column[1]);
     for (int i = 0; i < (kColumns == 1 ? 1 : 3); ++i) write3(column[i], ends.results.column[i]);
@@ -164,13 +174,13 @@ HWY_INLINE void write_results(const Ends& ends, std::size_t k, const Moving<kCol
 }
 template <int kColumns>
 HWY_NOINLINE void finish_last_vector(const Ends& ends, std::size_t k, const State& state) {
-  write_results<kColumns>(ends, k, moving_at<kColumns>(state, k), WriteSome{ends.count - k});
+  write_results<kColumns>(ends, vectors_of(ends), k, moving_at<kColumns>(state, k), WriteSome{ends.count - k});
 }
 template <int kColumns>
 HWY_INLINE void finish_vector(const Ends& ends, std::size_t k, const State& state) {
   if (ends.end == nullptr) return;
   if (HWY_LIKELY(k + hn::Lanes(Tag()) <= ends.count)) {
-    write_results<kColumns>(ends, k, moving_at<kColumns>(state, k), WriteWhole());
+    write_results<kColumns>(ends, vectors_of(ends), k, moving_at<kColumns>(state, k), WriteWhole());
   } else {
     finish_last_vector<kColumns>(ends, k, state);
   }

@@ -108,6 +108,7 @@ HWY_NOINLINE void take_back_error(const AxisStep& step, std::size_t rows, std::s
 HWY_NOINLINE void take_back_only_motion(const AxisStep& step, std::size_t rows, std::size_t end, Sweep& s) {
   const Vector3 direction = set3(step.direction), centre = set3(step.centre);
   const Vector sign = set(step.sign);
+  const StepVectors vectors = vectors_of(step);
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     const Vector3 out = load(s.point, k);
     if (!step.rotary) {
@@ -115,7 +116,7 @@ HWY_NOINLINE void take_back_only_motion(const AxisStep& step, std::size_t rows, 
       store(out - Vector3{hn::Mul(way, direction.x), hn::Mul(way, direction.y), hn::Mul(way, direction.z)}, s.point, k);
       continue;
     }
-    const Matrix3 r = rotation(step, motion_angle(step, {load(s.lanes.sine.v + k), load(s.lanes.cosine.v + k)}));
+    const Matrix3 r = rotation(vectors, motion_angle(vectors, {load(s.lanes.sine.v + k), load(s.lanes.cosine.v + k)}));
     store(transposed_times(r, out - centre) + centre, s.point, k);
     for (std::size_t row = 0; row < rows; ++row) {
       store(transposed_times(r, load(s.force[row], k)), s.force[row], k);
@@ -129,6 +130,7 @@ HWY_NOINLINE void take_back_motion(const AxisStep& step, std::size_t rows, std::
   const Vector3 direction = set3(step.direction), centre = set3(step.centre);
   const Vector3 tilt[3] = {set3(step.tilt_axes[0]), set3(step.tilt_axes[1]), set3(step.tilt_axes[2])};
   const Vector sign = set(step.sign);
+  const StepVectors vectors = vectors_of(step);
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     const Vector3 out = load(s.point, k);
     if (!step.rotary) {
@@ -143,7 +145,7 @@ HWY_NOINLINE void take_back_motion(const AxisStep& step, std::size_t rows, std::
       }
       continue;
     }
-    const Matrix3 r = rotation(step, motion_angle(step, {load(s.lanes.sine.v + k), load(s.lanes.cosine.v + k)}));
+    const Matrix3 r = rotation(vectors, motion_angle(vectors, {load(s.lanes.sine.v + k), load(s.lanes.cosine.v + k)}));
     const Vector3 r_out = out - centre, r_in = transposed_times(r, r_out);
     store(r_in + centre, s.point, k);
     for (std::size_t row = 0; row < rows; ++row) {

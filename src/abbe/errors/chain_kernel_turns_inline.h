@@ -80,47 +80,65 @@ HWY_INLINE void turn_back(const SineCosine& a, Vector& u, Vector& v) {
   v = hn::NegMulAdd(old, a.sine, hn::Mul(v, a.cosine));
 }
 
-/// Sine and cosine, absolute error below 2e-16 for |x| up to 1e6 rad.
+/// Sines and cosines, absolute error below 2e-16 for |x| up to 1e6 rad.
 ///
+/// Every operation is done for all vectors before the next one, which needs its result: so the processor waits less.
 /// Reduction by pi/2 in two parts of 53 bits, whose products a fused operation rounds once; without one, in three parts
 /// of 33 bits, whose products are exact. Polynomials of degree 13 and 14 on |r| <= pi/4. Source: the argument reduction
 /// of Cody and Waite (1980); coefficients of fdlibm.
-HWY_INLINE SineCosine sine_cosine(Vector x) {
+template <int kNumber>
+HWY_INLINE void sines_cosines(const Vector* x, SineCosine* result) {
   const Tag d;
   const IndexTag di;
+  using Several = Vector[kNumber];
+  const auto each = [](auto function) HWY_ATTR {
+    for (int i = 0; i < kNumber; ++i) function(i);
+  };
   // Adding 1.5 * 2^52 rounds to a whole number and leaves it in the low bits; cheap on every processor.
   const Vector rounder = set(6755399441055744.0);
-  const Vector rounded = hn::MulAdd(x, set(6.36619772367581382433e-01), rounder);
-  const Vector n = hn::Sub(rounded, rounder);
-  Vector r;
+  Several rounded, n, r, z, zz, s, c;
+  each([&](int i) HWY_ATTR { rounded[i] = hn::MulAdd(x[i], set(6.36619772367581382433e-01), rounder); });
+  each([&](int i) HWY_ATTR { n[i] = hn::Sub(rounded[i], rounder); });
   if constexpr (HWY_NATIVE_FMA) {
-    r = hn::NegMulAdd(n, set(0x1.921fb54442d18p+0), x);
-    r = hn::NegMulAdd(n, set(0x1.1a62633145c07p-54), r);
+    each([&](int i) HWY_ATTR { r[i] = hn::NegMulAdd(n[i], set(0x1.921fb54442d18p+0), x[i]); });
+    each([&](int i) HWY_ATTR { r[i] = hn::NegMulAdd(n[i], set(0x1.1a62633145c07p-54), r[i]); });
   } else {
-    r = hn::NegMulAdd(n, set(1.57079632673412561417e+00), x);
-    r = hn::NegMulAdd(n, set(6.07710050630396597660e-11), r);
-    r = hn::NegMulAdd(n, set(2.02226624879595063154e-21), r);
+    each([&](int i) HWY_ATTR { r[i] = hn::NegMulAdd(n[i], set(1.57079632673412561417e+00), x[i]); });
+    each([&](int i) HWY_ATTR { r[i] = hn::NegMulAdd(n[i], set(6.07710050630396597660e-11), r[i]); });
+    each([&](int i) HWY_ATTR { r[i] = hn::NegMulAdd(n[i], set(2.02226624879595063154e-21), r[i]); });
   }
-  const Vector z = hn::Mul(r, r);
+  each([&](int i) HWY_ATTR { z[i] = hn::Mul(r[i], r[i]); });
   // Pairs of terms first: a chain of all terms would be longer than what the processor can overlap.
-  const Vector zz = hn::Mul(z, z);
-  const auto pairs = [&](double c0, double c1, double c2, double c3, double c4, double c5) HWY_ATTR {
-    const Vector low = hn::MulAdd(z, set(c1), set(c0)), high = hn::MulAdd(z, set(c5), set(c4));
-    return hn::MulAdd(zz, hn::MulAdd(zz, high, hn::MulAdd(z, set(c3), set(c2))), low);
+  each([&](int i) HWY_ATTR { zz[i] = hn::Mul(z[i], z[i]); });
+  const auto pairs = [&](Vector* sum, double c0, double c1, double c2, double c3, double c4, double c5) HWY_ATTR {
+    Several low, middle;
+    each([&](int i) HWY_ATTR { sum[i] = hn::MulAdd(z[i], set(c5), set(c4)); });
+    each([&](int i) HWY_ATTR { middle[i] = hn::MulAdd(z[i], set(c3), set(c2)); });
+    each([&](int i) HWY_ATTR { low[i] = hn::MulAdd(z[i], set(c1), set(c0)); });
+    each([&](int i) HWY_ATTR { sum[i] = hn::MulAdd(zz[i], sum[i], middle[i]); });
+    each([&](int i) HWY_ATTR { sum[i] = hn::MulAdd(zz[i], sum[i], low[i]); });
   };
-  Vector s = pairs(-1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
-                   2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10);
-  s = hn::MulAdd(hn::Mul(z, r), s, r);
-  Vector c = pairs(4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
-                   -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11);
-  c = hn::MulAdd(zz, c, hn::MulAdd(z, set(-0.5), set(1.0)));
-  const auto quadrant = hn::BitCast(di, rounded);
-  // Bits are exchanged in odd quadrants by exclusive or: a choice by mask costs three operations with AVX2.
-  const Vector odd = hn::BitCast(d, hn::Neg(hn::And(quadrant, hn::Set(di, 1))));
-  const Vector other = hn::And(hn::Xor(s, c), odd), sign = hn::SignBit(d);
-  const Vector sine_sign = hn::And(hn::BitCast(d, hn::ShiftLeft<62>(quadrant)), sign);
-  const Vector cosine_sign = hn::Xor(sine_sign, hn::And(odd, sign));
-  return {hn::Xor(hn::Xor(s, other), sine_sign), hn::Xor(hn::Xor(c, other), cosine_sign)};
+  pairs(s, -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+        2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10);
+  each([&](int i) HWY_ATTR { s[i] = hn::MulAdd(hn::Mul(z[i], r[i]), s[i], r[i]); });
+  pairs(c, 4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+        -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11);
+  each([&](int i) HWY_ATTR { c[i] = hn::MulAdd(zz[i], c[i], hn::MulAdd(z[i], set(-0.5), set(1.0))); });
+  each([&](int i) HWY_ATTR {
+    const auto quadrant = hn::BitCast(di, rounded[i]);
+    // Bits are exchanged in odd quadrants by exclusive or: a choice by mask costs three operations with AVX2.
+    const Vector odd = hn::BitCast(d, hn::Neg(hn::And(quadrant, hn::Set(di, 1))));
+    const Vector other = hn::And(hn::Xor(s[i], c[i]), odd), sign = hn::SignBit(d);
+    const Vector sine_sign = hn::And(hn::BitCast(d, hn::ShiftLeft<62>(quadrant)), sign);
+    const Vector cosine_sign = hn::Xor(sine_sign, hn::And(odd, sign));
+    result[i] = {hn::Xor(hn::Xor(s[i], other), sine_sign), hn::Xor(hn::Xor(c[i], other), cosine_sign)};
+  });
+}
+/// The same of one vector.
+HWY_INLINE SineCosine sine_cosine(Vector x) {
+  SineCosine result;
+  sines_cosines<1>(&x, &result);
+  return result;
 }
 
 /// A turn by a small angle as three shears, u -= t v, v += s u, u -= t v: three multiply-adds instead of four
@@ -222,25 +240,51 @@ HWY_INLINE Vector3 transposed_times(const Matrix3& m, const Vector3& a) {
 }
 HWY_INLINE Matrix3 set_matrix(const double* m) { return {set3(m), set3(m + 3), set3(m + 6)}; }
 
+/// What a step needs of its axis, as vectors (AxisStep).
+///
+/// Made once before a loop. In the loop the compiler would read and spread the numbers again for every vector, because
+/// any store might change them as far as it knows.
+struct StepVectors {
+  Vector3 before, between, after;  ///< mm
+  bool has_offsets;                ///< any of these is not zero
+  Vector3 signed_direction;
+  Vector xx, yy, zz, xy, xz, yz;  ///< products of the direction
+  Vector zero_position, zero_sine, zero_cosine;
+};
+HWY_INLINE StepVectors vectors_of(const AxisStep& step) {
+  const double* product = step.direction_products;
+  return {.before = set3(step.before),
+          .between = set3(step.between),
+          .after = set3(step.after),
+          .has_offsets = step.has_offsets,
+          .signed_direction = set3(step.signed_direction),
+          .xx = set(product[0]),
+          .yy = set(product[1]),
+          .zz = set(product[2]),
+          .xy = set(product[3]),
+          .xz = set(product[4]),
+          .yz = set(product[5]),
+          .zero_position = set(step.zero_position),
+          .zero_sine = set(step.zero_sine),
+          .zero_cosine = set(step.zero_cosine)};
+}
+
 /// Rotation of a rotary axis about its displaced line by the angle times its sign.
-HWY_INLINE Matrix3 rotation(const AxisStep& step, const SineCosine& a) {
+HWY_INLINE Matrix3 rotation(const StepVectors& step, const SineCosine& a) {
   const Vector rest = hn::Sub(set(1.0), a.cosine);
-  const Vector xs = hn::Mul(set(step.signed_direction[0]), a.sine);
-  const Vector ys = hn::Mul(set(step.signed_direction[1]), a.sine);
-  const Vector zs = hn::Mul(set(step.signed_direction[2]), a.sine);
+  const Vector xs = hn::Mul(step.signed_direction.x, a.sine), ys = hn::Mul(step.signed_direction.y, a.sine);
+  const Vector zs = hn::Mul(step.signed_direction.z, a.sine);
   // Products and sums apart: other units add than multiply.
-  const Vector xy = hn::Mul(rest, set(step.direction_products[3])), xz = hn::Mul(rest, set(step.direction_products[4]));
-  const Vector yz = hn::Mul(rest, set(step.direction_products[5]));
-  return {{hn::MulAdd(rest, set(step.direction_products[0]), a.cosine), hn::Sub(xy, zs), hn::Add(xz, ys)},
-          {hn::Add(xy, zs), hn::MulAdd(rest, set(step.direction_products[1]), a.cosine), hn::Sub(yz, xs)},
-          {hn::Sub(xz, ys), hn::Add(yz, xs), hn::MulAdd(rest, set(step.direction_products[2]), a.cosine)}};
+  const Vector xy = hn::Mul(rest, step.xy), xz = hn::Mul(rest, step.xz), yz = hn::Mul(rest, step.yz);
+  return {{hn::MulAdd(rest, step.xx, a.cosine), hn::Sub(xy, zs), hn::Add(xz, ys)},
+          {hn::Add(xy, zs), hn::MulAdd(rest, step.yy, a.cosine), hn::Sub(yz, xs)},
+          {hn::Sub(xz, ys), hn::Add(yz, xs), hn::MulAdd(rest, step.zz, a.cosine)}};
 }
 
 /// Sine and cosine of q + zero position from those of q.
-HWY_INLINE SineCosine motion_angle(const AxisStep& step, const SineCosine& q) {
-  if (step.zero_position == 0) return q;
-  const Vector s0 = set(step.zero_sine), c0 = set(step.zero_cosine);
-  return {hn::MulAdd(q.sine, c0, hn::Mul(q.cosine, s0)), hn::NegMulAdd(q.sine, s0, hn::Mul(q.cosine, c0))};
+HWY_INLINE SineCosine motion_angle(const StepVectors& step, const SineCosine& q) {
+  return {hn::MulAdd(q.sine, step.zero_cosine, hn::Mul(q.cosine, step.zero_sine)),
+          hn::NegMulAdd(q.sine, step.zero_sine, hn::Mul(q.cosine, step.zero_cosine))};
 }
 
 }  // namespace HWY_NAMESPACE
