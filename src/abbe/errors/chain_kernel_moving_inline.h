@@ -130,6 +130,7 @@ HWY_INLINE void begin_columns(const Ends& ends, std::size_t k, State& state) {
   }
 }
 /// The caller's points in the machine frame with all axes at zero, mm.
+/// @param turns  whether the chain starts with a rotation
 HWY_INLINE Vector3 first_point(const Ends& ends, const EndVectors& vectors, std::size_t k, bool turns) {
   Vector3 p = {read(ends.from.x, k, ends.count), read(ends.from.y, k, ends.count), read(ends.from.z, k, ends.count)};
   if (turns) p = times(set_matrix(ends.start->rotation), p);
