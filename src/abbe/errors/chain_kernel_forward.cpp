@@ -20,7 +20,7 @@ namespace {
 struct StepShape {
   bool rotary, inverted, error_first, has_errors, has_angles, first_order;
   bool from_units;          ///< the first step, with columns that are ex and ey before it
-  bool may_begin, may_end;  ///< may be the first step, the last step
+  bool may_begin, may_end;  ///< false: certainly not the first, the last step
 };
 StepShape shape_of(const AxisStep& step, bool from_units = false) {
   return {.rotary = step.rotary,
@@ -128,7 +128,7 @@ template <int kColumns>
 HWY_INLINE void pass_shape(const StepShape shape, const AxisStep& step, const AxisLanes& lanes, const Ends& caller_ends,
                            State& state) {
   const StepVectors vectors = vectors_of(step);
-  const Ends ends = caller_ends;  // for the same reason
+  const Ends ends = caller_ends;  // a copy, which no store in the loop can change
   const EndVectors end_vectors = vectors_of(ends);
   const bool turns = shape.has_errors && shape.has_angles && !shape.first_order;
   for (std::size_t k = 0; k < ends.count; k += hn::Lanes(Tag())) {
@@ -159,7 +159,8 @@ template <int kColumns>
 HWY_NOINLINE void pass_any_axis(const AxisStep& step, const AxisLanes& lanes, const Ends& ends, State& state) {
   pass_shape<kColumns>(shape_of(step), step, lanes, ends, state);
 }
-/// Errors with angles, composed exactly in the order of ISO 230-1; where in the chain is known too.
+/// Errors with angles, composed exactly in the order of ISO 230-1. Whether the step may be the first or the last one of
+/// its chain is known to the compiler.
 template <int kColumns, bool kRotary, bool kInverted, bool kMayBegin, bool kMayEnd, bool kFromUnits>
 HWY_NOINLINE void pass_usual_axis_there(const AxisStep& step, const AxisLanes& lanes, const Ends& ends, State& state) {
   constexpr StepShape kShape{.rotary = kRotary,

@@ -106,7 +106,7 @@ struct Ends {
   Results results;
 };
 
-/// What a loop needs of the ends besides, made once before it for the reason of StepVectors.
+/// The same numbers of the ends as vectors, made once before a loop like StepVectors.
 struct EndVectors {
   Vector3 start_offset, end_offset;  ///< of the chain, mm
   bool end_turns;                    ///< whether the chain ends with a rotation

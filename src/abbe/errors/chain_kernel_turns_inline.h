@@ -82,10 +82,13 @@ HWY_INLINE void turn_back(const SineCosine& a, Vector& u, Vector& v) {
 
 /// Sines and cosines, absolute error below 2e-16 for |x| up to 1e6 rad.
 ///
-/// Every operation is done for all vectors before the next one, which needs its result: so the processor waits less.
+/// Every operation is done for all vectors before the next one, which depends on it, so the processor waits less.
 /// Reduction by pi/2 in two parts of 53 bits, whose products a fused operation rounds once; without one, in three parts
 /// of 33 bits, whose products are exact. Polynomials of degree 13 and 14 on |r| <= pi/4. Source: the argument reduction
 /// of Cody and Waite (1980); coefficients of fdlibm.
+///
+/// @param x       [kNumber] rad
+/// @param result  [kNumber]
 template <int kNumber>
 HWY_INLINE void sines_cosines(const Vector* x, SineCosine* result) {
   const Tag d;
@@ -134,7 +137,7 @@ HWY_INLINE void sines_cosines(const Vector* x, SineCosine* result) {
     result[i] = {hn::Xor(hn::Xor(s[i], other), sine_sign), hn::Xor(hn::Xor(c[i], other), cosine_sign)};
   });
 }
-/// The same of one vector.
+/// The same for one vector.
 HWY_INLINE SineCosine sine_cosine(Vector x) {
   SineCosine result;
   sines_cosines<1>(&x, &result);
@@ -240,16 +243,17 @@ HWY_INLINE Vector3 transposed_times(const Matrix3& m, const Vector3& a) {
 }
 HWY_INLINE Matrix3 set_matrix(const double* m) { return {set3(m), set3(m + 3), set3(m + 6)}; }
 
-/// What a step needs of its axis, as vectors (AxisStep).
+/// The numbers of an AxisStep that its motion needs, each broadcast to a vector.
 ///
-/// Made once before a loop. In the loop the compiler would read and spread the numbers again for every vector, because
-/// any store might change them as far as it knows.
+/// Made once before a loop. Inside the loop they would be loaded and broadcast again for every vector, because the
+/// compiler must assume that any store can change them.
 struct StepVectors {
   Vector3 before, between, after;  ///< mm
   bool has_offsets;                ///< any of these is not zero
   Vector3 signed_direction;
-  Vector xx, yy, zz, xy, xz, yz;  ///< products of the direction
-  Vector zero_position, zero_sine, zero_cosine;
+  Vector xx, yy, zz, xy, xz, yz;  ///< AxisStep::direction_products
+  Vector zero_position;           ///< mm or rad
+  Vector zero_sine, zero_cosine;
 };
 HWY_INLINE StepVectors vectors_of(const AxisStep& step) {
   const double* product = step.direction_products;
